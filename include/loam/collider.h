@@ -1,0 +1,78 @@
+/* Colliders: what matter runs into. They are moved by the host; matter does not move them.
+ *
+ * Thread contract: as for the world.
+ */
+#ifndef LOAM_COLLIDER_H
+#define LOAM_COLLIDER_H
+
+#include <loam/base.h>
+#include <loam/world.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A triangle mesh that belongs to the host; the library reads it during the call only. Three indices a triangle. For a closed mesh
+ * the triangles are counter-clockwise seen from outside. */
+typedef struct loam_mesh {
+  const float *positions; /* x, y, z of each vertex, metres */
+  const uint32_t *indices;
+  uint32_t vertex_count;
+  uint32_t triangle_count;
+} loam_mesh;
+
+enum {
+  LOAM_COLLIDER_PLANE = 0, /* the half space below the plane is solid: local y <= 0 */
+  LOAM_COLLIDER_MESH = 1   /* a surface, solid on neither side: matter stays on the side where it is */
+};
+
+typedef struct loam_collider_def {
+  uint32_t struct_size;
+  uint32_t kind;      /* LOAM_COLLIDER_*; default PLANE */
+  float position[3];  /* where the collider's origin is, metres; default 0 */
+  float rotation[4];  /* unit quaternion x, y, z, w; default identity; normalised by the library */
+  float friction;     /* Coulomb coefficient against all matter, 0 to 100; default 0.6 */
+  uint32_t reserved;  /* 0 */
+  loam_mesh mesh;     /* MESH only, in the collider's own frame; copied */
+} loam_collider_def;
+
+/* Errors: INVALID_ARGUMENT for null or an unknown size. */
+LOAM_API loam_status loam_collider_def_default(loam_collider_def *def, size_t size);
+
+/* Makes a collider. Meshes need not be perfect: degenerate triangles are dropped and counted, open and non-manifold edges are
+ * accepted and counted (see loam_collider_get_report).
+ * Errors: INVALID_ARGUMENT naming field and value (a NaN vertex, an index out of range); INVALID_MESH if no usable triangle is
+ * left; OUT_OF_MEMORY; CAPACITY beyond 4096 colliders in a world. */
+LOAM_API loam_status loam_collider_create(loam_world *world, const loam_collider_def *def, loam_collider_id *collider);
+
+/* Errors: INVALID_HANDLE. */
+LOAM_API loam_status loam_collider_destroy(loam_world *world, loam_collider_id collider);
+
+/* Where the collider is to be at the end of the next step. During that step it moves there at constant velocity and spin (pose
+ * interpolated over the substeps), carrying and pushing what it touches; after it, it rests there until moved again.
+ * Errors: INVALID_HANDLE, INVALID_ARGUMENT. */
+LOAM_API loam_status loam_collider_move(loam_world *world, loam_collider_id collider, const float position[3],
+                                        const float rotation[4]);
+
+/* Like move, but at once and without a velocity: a teleport. Matter that was inside or in between is not pushed. */
+LOAM_API loam_status loam_collider_place(loam_world *world, loam_collider_id collider, const float position[3],
+                                         const float rotation[4]);
+
+/* What the library found in a collider's mesh. For a plane all counts are 0. */
+typedef struct loam_collider_report {
+  uint32_t struct_size;           /* set by the caller */
+  uint32_t triangles;             /* kept */
+  uint32_t degenerate_triangles;  /* dropped: zero area or repeated vertices */
+  uint32_t open_edges;            /* edges of one triangle only */
+  uint32_t non_manifold_edges;    /* edges of three triangles or more, or of two that disagree on the orientation */
+  uint32_t closed;                /* 1 if there is an inside: no open or non-manifold edge */
+} loam_collider_report;
+
+/* Errors: INVALID_HANDLE, INVALID_ARGUMENT. */
+LOAM_API loam_status loam_collider_get_report(const loam_world *world, loam_collider_id collider, loam_collider_report *report);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

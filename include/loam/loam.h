@@ -1,0 +1,23 @@
+/* Loam: sand, snow, clay and other inelastic matter for games, in one particle solver.
+ *
+ * The whole public interface. The order of the parts is the order in which a host meets them:
+ *
+ *   base.h       status codes, ids, hooks (allocator, job system, log), version
+ *   world.h      create a world, step it, ask what it cost
+ *   material.h   what matter is made of
+ *   collider.h   planes and triangle meshes that matter runs into
+ *   particles.h  fill volumes with particles, read the particles back
+ *
+ * Units are SI throughout: metres, kilograms, seconds, pascals, radians. Coordinates are right-handed; which axis
+ * is up is the host's choice, made through gravity. See samples/hello_sand.c for a complete host in under 100 lines.
+ */
+#ifndef LOAM_LOAM_H
+#define LOAM_LOAM_H
+
+#include <loam/base.h>
+#include <loam/collider.h>
+#include <loam/material.h>
+#include <loam/particles.h>
+#include <loam/world.h>
+
+#endif

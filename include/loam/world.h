@@ -1,0 +1,184 @@
+/* The world: everything that is simulated together, and its step.
+ *
+ * Thread contract of the whole header: a world is used by one thread at a time; two worlds may be used by two threads
+ * at once. The library has no global state beside the last error text of each thread.
+ */
+#ifndef LOAM_WORLD_H
+#define LOAM_WORLD_H
+
+#include <loam/base.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct loam_world loam_world;
+
+/* Which machine runs the world. */
+enum {
+  LOAM_BACKEND_AUTO = 0, /* CUDA where a usable device is found, otherwise the CPU */
+  LOAM_BACKEND_CPU = 1,
+  LOAM_BACKEND_CUDA = 2 /* LOAM_ERROR_BACKEND_UNAVAILABLE where there is no device, no driver, or no CUDA build */
+};
+
+/* How the constraints of one iteration are visited. */
+enum {
+  LOAM_SOLVER_GAUSS_SEIDEL = 0, /* in turn, cells of one colour at a time: converges fastest */
+  LOAM_SOLVER_JACOBI = 1        /* all at once, with split masses: fewer, larger launches; needs more iterations */
+};
+
+/* When the plastic return mapping acts. */
+enum {
+  LOAM_PLASTICITY_IMPLICIT = 0,     /* inside every iteration, as the method asks */
+  LOAM_PLASTICITY_SEMI_IMPLICIT = 1 /* once, at the end of the substep; matter then behaves like jelly: for comparison only */
+};
+
+/* The instruction set of the CPU backend. Results have the same bits with each of them. */
+enum {
+  LOAM_INSTRUCTION_SET_AUTO = 0, /* the widest that this machine has */
+  LOAM_INSTRUCTION_SET_PORTABLE = 1,
+  LOAM_INSTRUCTION_SET_SSE4 = 2,
+  LOAM_INSTRUCTION_SET_AVX2 = 3,
+  LOAM_INSTRUCTION_SET_AVX512 = 4
+};
+
+/* What a world is made with. Fill it with loam_world_def_default first, then change what matters. */
+typedef struct loam_world_def {
+  uint32_t struct_size; /* sizeof(loam_world_def) of the header that the host was compiled with */
+  uint32_t backend;     /* LOAM_BACKEND_*; default AUTO */
+
+  float gravity[3]; /* m/s^2; default (0, -9.81, 0) */
+
+  /* r, in metres: the length scale of the discretisation. A particle feels others up to 2 r away; particles are placed
+   * about r apart. Halving it makes eight times the particles. Range 1e-6 to 1e6; default 0.01. */
+  float kernel_radius;
+
+  /* A step of t seconds is cut into this many substeps of t / substeps. Accuracy and stiffness come from short substeps
+   * first, from iterations second. Matter moving faster than r / substep is slowed down to that. 1 to 10000; default 16. */
+  uint32_t substeps;
+
+  /* Passes over all constraints in a substep. 1 to 1000; default 5. */
+  uint32_t iterations;
+
+  uint32_t solver;     /* LOAM_SOLVER_*; default GAUSS_SEIDEL */
+  uint32_t plasticity; /* LOAM_PLASTICITY_*; default IMPLICIT */
+
+  /* Share of the velocity differences between neighbours that is smoothed away per second (XSPH, equation 20 of the XPBI
+   * paper, scaled by the substep so that it does not depend on it). 0 switches the stage off. 0 to 1e4, and at most 1 within a
+   * substep; default 20. */
+  float velocity_smoothing;
+
+  /* The least distance between particles, as a share of r, that position correction keeps: the r - eps of the paper, whose
+   * eps is 0.25 r. 0 switches the stage off. 0 to 1; default 0.75. */
+  float minimum_distance;
+
+  /* Singular values of the kernel-gradient correction below this share of a full neighbourhood's value are cut off: it decides
+   * how far a sparse neighbourhood (a surface, a lone pair) may be trusted. 0.01 to 1; default 0.2. */
+  float gradient_cutoff;
+
+  /* Threads of the CPU backend that take part in a step, the caller's included. 0: as many as the machine has. At most 256.
+   * Results do not depend on it. */
+  uint32_t thread_count;
+  uint32_t instruction_set; /* LOAM_INSTRUCTION_SET_*; default AUTO; one that the machine lacks is an error */
+
+  /* The most particles the world will ever hold; memory for them is taken at once. 1 to 2^28; default 65536. */
+  uint64_t particle_capacity;
+
+  /* The most neighbour pairs (ordered, so about 28 a particle at the usual density). 0: pair storage grows when a step needs
+   * more, outside the steady state. Otherwise a step that needs more fails with LOAM_ERROR_CAPACITY. Default 0. */
+  uint64_t pair_capacity;
+
+  loam_allocator allocator;
+  loam_job_system job_system;
+  loam_log log;
+} loam_world_def;
+
+/* Writes the defaults above. `size` is sizeof(loam_world_def); at most that many bytes are written.
+ * Errors: INVALID_ARGUMENT if `def` is null or `size` is not that of a known version. */
+LOAM_API loam_status loam_world_def_default(loam_world_def *def, size_t size);
+
+/* Makes a world. The definition is copied. On success *world is to be given to loam_world_destroy; on failure it is null.
+ * Errors: INVALID_ARGUMENT (names the field), OUT_OF_MEMORY, BACKEND_UNAVAILABLE. */
+LOAM_API loam_status loam_world_create(const loam_world_def *def, loam_world **world);
+
+/* Ends a world, its memory and all its ids. Mapped pointers become invalid. Null is allowed and does nothing. */
+LOAM_API loam_status loam_world_destroy(loam_world *world);
+
+/* Advances the world by `seconds` (over 0, at most 1), in the definition's number of substeps.
+ * Errors: INVALID_ARGUMENT; IN_USE while particle buffers are mapped; CAPACITY or OUT_OF_MEMORY if the neighbour pairs need more
+ * room. On CAPACITY or OUT_OF_MEMORY the world stands at the end of the last whole substep (*statistics.substeps_done of them). */
+LOAM_API loam_status loam_world_step(loam_world *world, float seconds);
+
+/* Gravity in m/s^2 from the next step on. Errors: INVALID_ARGUMENT if a component is not finite or beyond 1e6. */
+LOAM_API loam_status loam_world_set_gravity(loam_world *world, const float gravity[3]);
+
+/* Substeps and iterations from the next step on; ranges as in the definition. */
+LOAM_API loam_status loam_world_set_accuracy(loam_world *world, uint32_t substeps, uint32_t iterations);
+
+/* The backend that the world really uses: LOAM_BACKEND_CPU or LOAM_BACKEND_CUDA; and, on the CPU, the instruction set. Either
+ * pointer may be null. */
+LOAM_API loam_status loam_world_get_backend(const loam_world *world, uint32_t *backend, uint32_t *instruction_set);
+
+/* A 64-bit hash of everything that decides the future of the particles. Same build, backend and inputs: same hash, for any
+ * number of threads and any instruction set. Two worlds with equal hashes step alike. */
+LOAM_API loam_status loam_world_state_hash(const loam_world *world, uint64_t *hash);
+
+/* ------------------------------------------------------------------------------------------------ statistics --- */
+
+/* Totals of the last loam_world_step. */
+typedef struct loam_statistics {
+  uint32_t struct_size;   /* set by the caller to sizeof(loam_statistics) */
+  uint32_t substeps_done; /* whole substeps of the last step */
+
+  uint64_t particles;      /* now in the world */
+  uint64_t pairs;          /* ordered neighbour pairs in the last substep */
+  uint64_t pairs_peak;     /* the most in any substep so far: what pair_capacity would have to be */
+  uint64_t pair_visits;    /* pairs x iterations, summed over the substeps of the step */
+  uint64_t contacts;       /* collider contact planes in the last substep */
+  uint64_t non_finite;     /* particles whose position, velocity or strain is not finite now; such a particle is held in place */
+  uint64_t speed_limited;  /* times a particle was slowed to r / substep in the step */
+  uint64_t strain_limited; /* times a trial strain was clamped to its bound in the last substep of the step */
+
+  double step_seconds; /* wall time of the step */
+
+  /* Of the last iteration: the root of the sum of (C + alpha~ lambda)^2 over the sum of C^2. Small means that the iteration has settled; it does
+   * not mean that the step is solved exactly. 0 where nothing is strained. */
+  double residual;
+
+  /* -sum V tau : (g g^T) / |g|^2 over the weight of the matter above its supports: 1 in true equilibrium at rest, below 1 where an
+   * unconverged solve leaves matter softer than its material. Meaningful only when nothing moves. 0 without gravity or contacts. */
+  double virial;
+
+  double kinetic_energy; /* J */
+  double max_speed;      /* m/s */
+  double mean_speed;     /* m/s */
+  double momentum[3];    /* kg m/s */
+} loam_statistics;
+
+/* Errors: INVALID_ARGUMENT for null or an unknown struct_size. */
+LOAM_API loam_status loam_world_get_statistics(const loam_world *world, loam_statistics *statistics);
+
+/* One stage of the schedule that the world's contents call for, in the order of execution. */
+typedef struct loam_stage {
+  char name[48];  /* such as "solve dry_sand" or "neighbour search"; always terminated */
+  double seconds; /* wall time within the last loam_world_step */
+  uint64_t items; /* what it worked through in that step: particles, pairs or contacts, times its executions */
+} loam_stage;
+
+/* Copies up to `capacity` stages; *count receives how many there are. `stages` may be null when `capacity` is 0. */
+LOAM_API loam_status loam_world_get_stages(const loam_world *world, loam_stage *stages, uint32_t capacity, uint32_t *count);
+
+/* Memory that the world holds for one effect, on the machine that runs it. */
+typedef struct loam_memory {
+  char effect[48]; /* such as "particles", "neighbour pairs", "colliders" */
+  uint64_t bytes;
+} loam_memory;
+
+/* Copies up to `capacity` rows; *count receives how many there are. `rows` may be null when `capacity` is 0. */
+LOAM_API loam_status loam_world_get_memory(const loam_world *world, loam_memory *rows, uint32_t capacity, uint32_t *count);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
