@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs, builds and simulates the hourglass; its pictures end up in out/hourglass. Needs Debian 12, no GPU.
 #   demo.sh [options of loam-run]      for example: demo.sh --backend cpu
+# shellcheck source=scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 scene=samples/scenes/hourglass/scene.toml

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing to build Loam on Debian 12, as root or through sudo. Does nothing, at once, where nothing is missing.
 #   install_dependencies.sh [demo|tests]      demo: the library and the sample programs; tests (default): that and every check
+# shellcheck source=scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 group=${1:-tests}

@@ -1,0 +1,147 @@
+#!/usr/bin/env bash
+# Installs, builds and runs everything that guards the project. Needs Debian 12, no GPU; two cores will do.
+#   test.sh            all steps
+#   test.sh STEP...    some of them
+# Steps:
+#   format    every source is as clang-format leaves it
+#   headers   every public header alone, and the sample host, as C99, C++17 and C++20, with gcc and clang
+#   release   release build, warnings as errors; all tests
+#   symbols   the library exports the functions of include/loam and nothing else
+#   kernels   no instruction set's code can be reached from another
+#   layout    sizes, offsets and values of the ABI against the baseline (the release step has this too)
+#   package   a host project builds against the installed library, and configures with the source tree taken in
+#   tidy      clang-tidy over what stands above the kernels
+#   asan      address and undefined-behaviour sanitizers: unit, abi, hard cases
+#   tsan      thread sanitizer: determinism, and the unit tests of threads
+# shellcheck source=scripts/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+all_steps=(format headers release symbols kernels package tidy asan tsan)
+
+sources() { git ls-files --cached "$@" | while IFS= read -r path; do [[ -f $path ]] && printf '%s\0' "$path"; done; }
+
+source_patterns=('*.h' '*.hpp' '*.c' '*.cpp' '*.cu' '*.cuh')
+
+# The version that the format was written for, where the system has it under that name.
+tool() { command -v "$1-14" || command -v "$1" || die "$1 is missing"; }
+
+build_release() {
+  configure release -DLOAM_BUILD_TESTS=ON -DLOAM_BUILD_SAMPLES=ON -DLOAM_BUILD_BENCHMARKS=ON
+  cmake --build --preset release "$@"
+}
+
+step_format() {
+  local wrong
+  wrong=$(sources "${source_patterns[@]}" | xargs -0 -r -P "$(jobs)" -n 40 "$(tool clang-format)" --dry-run -Werror 2>&1 |
+    sed -n 's/^\([^: ]*\):[0-9]*:[0-9]*: error: .*/\1/p' | sort -u) || true
+  if [[ -n $wrong ]]; then
+    echo "not as clang-format leaves them; to repair: clang-format -i ${wrong//$'\n'/ }"
+    return 1
+  fi
+  echo "$(sources "${source_patterns[@]}" | tr -cd '\0' | wc -c) sources are as clang-format leaves them"
+}
+
+step_headers() {
+  local warnings=(-Wall -Wextra -Wpedantic -Werror -Iinclude -fsyntax-only) header standard
+  for header in include/loam/*.h; do
+    for standard in c99 c++17 c++20; do
+      local language=c compilers=(gcc clang)
+      if [[ $standard == c++* ]]; then language=c++ compilers=(g++ clang++); fi
+      for compiler in "${compilers[@]}"; do
+        printf '#include <loam/%s>\n' "${header##*/}" | "$compiler" -std="$standard" -x "$language" "${warnings[@]}" - ||
+          die "$header does not compile alone as $standard with $compiler"
+      done
+    done
+    echo "$header: C99, C++17, C++20"
+  done
+  for compiler in gcc clang; do "$compiler" -std=c99 "${warnings[@]}" samples/*.c; done
+  echo "samples/*.c: C99"
+}
+
+step_release() {
+  build_release
+  ctest --preset release
+}
+
+step_symbols() {
+  build_release --target loam
+  scripts/public_api.py compare-exports --library build/release/runtime/libloam.so
+}
+
+step_kernels() {
+  build_release --target loam
+  scripts/check_symbols.py build/release
+}
+
+step_layout() {
+  build_release --target loam-tests-abi-layout
+  ctest --preset release --tests-regex '^abi[.]layout$'
+}
+
+step_package() {
+  local directory=$PWD/build/package-test
+  build_release --target loam
+  rm -rf "$directory"
+  cmake --install build/release --prefix "$directory/prefix"
+  cmake -G Ninja -S tests/package -B "$directory/found" -DCMAKE_PREFIX_PATH="$directory/prefix" -DCMAKE_BUILD_TYPE=Release
+  cmake --build "$directory/found"
+  "$directory/found/host"
+  cmake -G Ninja -S tests/package -B "$directory/taken-in" -DLOAM_SOURCE="$PWD" -DLOAM_CUDA=OFF -DCMAKE_BUILD_TYPE=Release
+  echo "a host builds against the installed library, and configures with the source tree"
+}
+
+step_tidy() {
+  local database=build/release
+  [[ -f $database/compile_commands.json ]] || configure release
+  # Sources that this build does not compile (another system's, say) have no command, and are left out.
+  sources 'runtime/api/*.cpp' 'runtime/scene/*.cpp' 'runtime/schedule/*.cpp' 'runtime/solver/*.cpp' 'samples/*.cpp' |
+    while IFS= read -r -d '' path; do grep -qF "$PWD/$path" "$database/compile_commands.json" && printf '%s\0' "$path"; done |
+    xargs -0 -r -P "$(jobs)" -n 1 "$(tool clang-tidy)" -p "$database" --quiet --extra-arg=-Wno-unknown-warning-option
+  echo "clang-tidy has no complaint"
+}
+
+step_asan() {
+  configure asan
+  cmake --build --preset asan
+  ctest --preset asan --label-regex '^(unit|abi|hard_cases)$'
+}
+
+step_tsan() {
+  configure tsan
+  cmake --build --preset tsan
+  ctest --preset tsan --tests-regex '^determinism[.]|^unit[.][A-Za-z]*(Thread|Job|Parallel|Executor|Pool)'
+}
+
+if [[ ${1:-} == --run ]]; then
+  "step_$2"
+  exit
+fi
+
+steps=("$@")
+[[ ${#steps[@]} -gt 0 ]] || steps=("${all_steps[@]}")
+for step in "${steps[@]}"; do
+  declare -F "step_$step" >/dev/null || die "no step '$step'; there are: ${all_steps[*]} layout"
+done
+
+scripts/install_dependencies.sh tests
+
+summary=()
+passed=0
+failed=0
+for step in "${steps[@]}"; do
+  say "$step"
+  start=$SECONDS
+  if bash scripts/test.sh --run "$step"; then
+    result=passed
+    passed=$((passed + 1))
+  else
+    result=FAILED
+    failed=$((failed + 1))
+  fi
+  summary+=("$(printf '  %-8s %-6s %4d s' "$step" "$result" $((SECONDS - start)))")
+done
+
+say "Summary (${SECONDS} s)"
+printf '%s\n' "${summary[@]}"
+echo "steps: $passed passed, $failed failed"
+[[ $failed -eq 0 ]]
