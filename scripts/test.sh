@@ -4,7 +4,7 @@
 #   test.sh STEP...    some of them
 # Steps:
 #   format    every source is as clang-format leaves it
-#   headers   every public header alone, and the sample host, as C99, C++17 and C++20, with gcc and clang
+#   headers   every public header alone as C99, C++17 and C++20, the sample host and README's as C99, with gcc and clang
 #   release   release build, warnings as errors; all tests
 #   symbols   the library exports the functions of include/loam and nothing else
 #   kernels   no instruction set's code can be reached from another
@@ -54,8 +54,11 @@ step_headers() {
     done
     echo "$header: C99, C++17, C++20"
   done
-  for compiler in gcc clang; do "$compiler" -std=c99 "${warnings[@]}" samples/*.c; done
-  echo "samples/*.c: C99"
+  for compiler in gcc clang; do
+    "$compiler" -std=c99 "${warnings[@]}" samples/*.c
+    sed -n '/^```c$/,/^```$/{/^```/!p}' README.md | "$compiler" -std=c99 -x c "${warnings[@]}" -
+  done
+  echo "samples/*.c and the program in README.md: C99"
 }
 
 step_release() {
