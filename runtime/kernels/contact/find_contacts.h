@@ -1,0 +1,193 @@
+// Once a substep: which planes hold a particle back.
+//
+// A particle keeps the stand-off from every collider. For a mesh this becomes, for one substep, up to four half spaces, each through a
+// point of the surface that is closest to the particle, and facing the particle: a mesh is solid on neither side.
+//
+//        o  x at the start                Which points? Those where the distance to the particle has a local minimum over
+//       /|\                               the surface. The floor below gives q alone: at p and s the surface goes on towards q, so
+//      / | \                              their planes, tilted, would be bumps that are not there ("ghost collisions at internal
+//   __p__q__s___                          edges"). A concave corner has a minimum on each wall, and both are kept.
+//
+// Whether a point on an edge or a vertex is a minimum is read off the triangles that share it: it is not if one of their far
+// vertices (the feature's ring) lies on the particle's side of the plane through the point. One triangle owns each feature and speaks for it; if that
+// one is closest elsewhere, it is closer there, and the point was no minimum either.
+//
+// The half space is placed where the collider will be at the end of the substep. If the particle starts nearer than the stand-off, it
+// must not come nearer still, and moves out slowly: at once would be a velocity, and sand would pop instead of rest.
+#pragma once
+
+#include <loam/collider.h>
+
+#include "kernels/contact/mesh_query.h"
+#include "math/atomics.h"
+
+namespace loam {
+
+// A particle that is too near moves out by this share of what is missing in a substep, but not faster than in this time (seconds). Against
+// gravity g the way out ends without a hop while the stand-off is under g T^2, 2.5 cm on Earth.
+constexpr float contact_recovery_share = 0.2f;
+constexpr float contact_recovery_time = 0.05f;
+
+// The planes of one particle while they are being collected, least gap first.
+struct PlaneList {
+  ContactPlane planes[Contact::max_planes];
+  int collider[Contact::max_planes];
+  int count = 0;
+
+  LOAM_FN void remove(int at) {
+    --count;
+    for (int i = at; i < count; ++i) {
+      planes[i] = planes[i + 1];
+      collider[i] = collider[i + 1];
+    }
+  }
+
+  // Of planes of one collider within eight degrees of each other only the closest stays; of more than four the closest four.
+  LOAM_FN void insert(const ContactPlane &plane, int of) {
+    constexpr float parallel = 0.99f;
+    for (int i = count - 1; i >= 0; --i) {
+      if (collider[i] != of || !(dot(planes[i].normal, plane.normal) > parallel)) continue;
+      if (planes[i].gap <= plane.gap) return;
+      remove(i);
+    }
+    int at = count;
+    while (at > 0 && plane.gap < planes[at - 1].gap) --at;
+    if (at == Contact::max_planes) return;
+    if (count < Contact::max_planes) ++count;
+    for (int i = count - 1; i > at; --i) {
+      planes[i] = planes[i - 1];
+      collider[i] = collider[i - 1];
+    }
+    planes[at] = plane;
+    collider[at] = of;
+  }
+};
+
+struct FindContacts {
+  const Row *positions;  // at the start of the substep
+  const Row *velocities; // w is the inverse mass; 0: pinned, has no contacts
+  const ColliderView *colliders;
+  int collider_count;
+  float substep;   // s
+  float stand_off; // the distance to keep
+  float reach;     // the most that a particle can move in the substep by itself
+  Contact *contacts;
+  int capacity;
+  int *count; // zero before; counts on past the capacity, for the host to make room and run again
+
+  LOAM_FN void operator()(int particle) const {
+    const Vec3<float> x = xyz(positions[particle]);
+    if (velocities[particle].w == 0.0f || !is_finite(x)) return;
+    PlaneList list;
+    float clearance = stand_off + reach;
+    for (int i = 0; i < collider_count; ++i) {
+      if (colliders[i].kind == LOAM_COLLIDER_PLANE) {
+        find_plane(i, x, list, clearance);
+      } else {
+        find_mesh(i, x, list, clearance);
+      }
+    }
+    if (list.count == 0) return;
+    const int slot = atomic_add(count, 1);
+    if (slot >= capacity) return;
+    Contact &contact = contacts[slot];
+    contact.particle = particle;
+    contact.plane_count = list.count;
+    contact.clearance = clearance;
+    for (int i = 0; i < list.count; ++i) {
+      contact.planes[i] = list.planes[i];
+      contact.normal_change[i] = 0.0f;
+      contact.friction_change[i] = {0.0f, 0.0f, 0.0f};
+    }
+  }
+
+private:
+  // Where a point that moves with the collider goes in the substep.
+  LOAM_FN static Vec3<float> carried(const ColliderView &collider, Vec3<float> local) {
+    if (at_rest(collider)) return {0.0f, 0.0f, 0.0f};
+    return (rotate(collider.end.rotation, local) - rotate(collider.start.rotation, local)) +
+           (collider.end.position - collider.start.position);
+  }
+
+  // The half space of a contact point in the collider's frame. `shift` is where the collider would carry the particle.
+  LOAM_FN ContactPlane plane_at(const ColliderView &collider, Vec3<float> point, Vec3<float> normal, float distance,
+                                Vec3<float> shift) const {
+    const float missing = minimum(stand_off - distance, stand_off);
+    const float recovery = minimum(contact_recovery_share, substep / contact_recovery_time);
+    ContactPlane plane;
+    plane.normal = rotate(collider.end.rotation, normal);
+    plane.gap = (missing > 0.0f ? 0.0f - recovery * missing : 0.0f - missing) - dot(plane.normal, shift);
+    plane.surface_velocity = (1.0f / substep) * carried(collider, point);
+    plane.friction = collider.friction;
+    return plane;
+  }
+
+  LOAM_FN void find_plane(int index, Vec3<float> x, PlaneList &list, float &clearance) const {
+    const ColliderView &collider = colliders[index];
+    const Vec3<float> local = to_local(collider.start, x);
+    const Vec3<float> shift = carried(collider, local);
+    const ContactPlane plane = plane_at(collider, {local.x, 0.0f, local.z}, {0.0f, 1.0f, 0.0f}, local.y, shift);
+    clearance = minimum(clearance, local.y - length(shift));
+    if (plane.gap < reach) list.insert(plane, index);
+  }
+
+  LOAM_FN void find_mesh(int index, Vec3<float> x, PlaneList &list, float &clearance) const {
+    const ColliderView &collider = colliders[index];
+    const Vec3<float> local = to_local(collider.start, x);
+    const Vec3<float> shift = carried(collider, local);
+    const float radius = stand_off + reach + length(shift);
+    const float radius_squared = radius * radius;
+
+    ClosestPoint<float> nearest = {{0.0f, 0.0f, 0.0f}, radius_squared, -1};
+    int nearest_triangle = 0;
+    bool nearest_is_listed = false;
+    BallQuery query(collider.nodes, local);
+    for (int i = query.next(radius_squared); i >= 0; i = query.next(radius_squared)) {
+      const BvhTriangle &t = collider.triangles[i];
+      const ClosestPoint<float> closest = closest_point_on_triangle(t.a - local, t.b - local, t.c - local, t.normal);
+      if (!(closest.distance_squared < radius_squared)) continue;
+      const bool minimum_here = is_minimum(collider, i, closest, local);
+      if (closest.distance_squared < nearest.distance_squared) {
+        nearest = closest;
+        nearest_triangle = i;
+        nearest_is_listed = minimum_here;
+      }
+      if (minimum_here) add(index, i, closest, local, shift, false, list);
+    }
+    if (nearest.feature < 0) return;
+    clearance = minimum(clearance, square_root(nearest.distance_squared) - length(shift));
+    // The nearest point is a minimum whatever rounding made of its feature.
+    if (!nearest_is_listed) add(index, nearest_triangle, nearest, local, shift, true, list);
+  }
+
+  LOAM_FN static bool is_minimum(const ColliderView &collider, int triangle, const ClosestPoint<float> &closest,
+                                 Vec3<float> local) {
+    const BvhFeatures &features = collider.features[triangle];
+    if ((features.owned >> closest.feature & 1u) == 0) return false;
+    if (closest.feature == BvhFeatures::inside) return true;
+    constexpr float slope_squared = 1e-6f; // a descent of less than 1 in 1000 may be rounding
+    for (std::uint32_t k = features.first[closest.feature]; k < features.first[closest.feature + 1]; ++k) {
+      const Vec3<float> along = (collider.ring[k] - local) - closest.point;
+      const float descent = 0.0f - dot(along, closest.point);
+      if (descent > 0.0f && descent * descent > slope_squared * (closest.distance_squared * dot(along, along))) return false;
+    }
+    return true;
+  }
+
+  LOAM_FN void add(int index, int triangle, const ClosestPoint<float> &closest, Vec3<float> local, Vec3<float> shift,
+                   bool even_if_out_of_reach, PlaneList &list) const {
+    const ColliderView &collider = colliders[index];
+    const float distance = square_root(closest.distance_squared);
+    Vec3<float> normal;
+    if (distance > 0.05f * stand_off) {
+      normal = (-1.0f / distance) * closest.point;
+    } else { // too near for a direction: the triangle's own, on the particle's side; in front if it lies in the surface
+      const BvhTriangle &t = collider.triangles[triangle];
+      normal = dot(t.normal, local - t.a) < 0.0f ? -1.0f * t.normal : t.normal;
+    }
+    const ContactPlane plane = plane_at(collider, local + closest.point, normal, distance, shift);
+    if (plane.gap < reach || even_if_out_of_reach) list.insert(plane, index);
+  }
+};
+
+} // namespace loam

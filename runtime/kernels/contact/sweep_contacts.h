@@ -1,0 +1,102 @@
+// Last in a substep, after everything that changes velocities: no particle crosses a surface.
+//
+// The planes are linear and four at most; what gets past them is stopped here. In the frame of the moving collider the particle
+// goes straight from its place at the start to its place at the end. It advances along that line by conservative advancement
+// (Mirtich 1996): from a point at distance D of the mesh it can go D without touching anything. There is no crossing test, hence no edge
+// to leak through and no grazing case; the answer is conservative to rounding.
+//
+// A particle keeps a small margin from every surface, or the distance that it has if that is less; so it is always on a definite side,
+// and pressing it against a wall for ever does not bring it nearer.
+#pragma once
+
+#include <loam/collider.h>
+
+#include "kernels/contact/mesh_query.h"
+
+namespace loam {
+
+struct SweepContacts {
+  const Contact *contacts;
+  const Row *positions; // at the start of the substep
+  Row *velocities;
+  const ColliderView *colliders;
+  int collider_count;
+  float substep;
+  float margin; // a small share of the stand-off
+
+  LOAM_FN void operator()(int index) const {
+    const Contact &contact = contacts[index];
+    const Vec3<float> x = xyz(positions[contact.particle]);
+    Row &row = velocities[contact.particle];
+    Vec3<float> motion = substep * xyz(row);
+    if (!is_finite(motion))
+      motion = {0.0f, 0.0f, 0.0f};
+    else if (length(motion) + margin <= contact.clearance)
+      return;
+
+    // Shortening a motion for one moving collider may lead into another: try again a few times. Colliders at rest come last: between a
+    // piston and a wall, matter stays on its side of the wall.
+    bool cut = false, changed = true;
+    for (int round = 0; round < 4 && changed; ++round) {
+      changed = false;
+      for (int pass = 0; pass < 2; ++pass) {
+        for (int i = 0; i < collider_count; ++i) {
+          const ColliderView &collider = colliders[i];
+          if (at_rest(collider) != (pass == 1)) continue;
+          const bool shortened = collider.kind == LOAM_COLLIDER_PLANE ? keep_above_plane(collider, x, motion)
+                                                                      : keep_off_mesh(collider, x, motion);
+          changed = changed || shortened;
+        }
+      }
+      cut = cut || changed;
+    }
+    if (!cut && is_finite(xyz(row))) return;
+    row.x = motion.x / substep;
+    row.y = motion.y / substep;
+    row.z = motion.z / substep;
+  }
+
+private:
+  // Half spaces are solid: a particle in one may come out but not go deeper.
+  LOAM_FN bool keep_above_plane(const ColliderView &collider, Vec3<float> x, Vec3<float> &motion) const {
+    const float start = to_local(collider.start, x).y;
+    const float end = to_local(collider.end, x + motion).y;
+    const float missing = minimum(margin, start) - end;
+    if (!(missing > 1e-3f * margin)) return false;
+    motion = motion + missing * rotate(collider.end.rotation, {0.0f, 1.0f, 0.0f});
+    return true;
+  }
+
+  LOAM_FN bool keep_off_mesh(const ColliderView &collider, Vec3<float> x, Vec3<float> &motion) const {
+    const Vec3<float> start = to_local(collider.start, x);
+    const Vec3<float> way = to_local(collider.end, x + motion) - start;
+    const float way_length = length(way);
+    if (!(way_length > 0.0f)) return false;
+    const float share = free_share(collider, start, way, way_length);
+    if (share >= 1.0f) return false;
+    motion = at_rest(collider) ? share * motion : to_world(collider.end, start + share * way) - x;
+    return true;
+  }
+
+  // How much of the way can be gone: on it the particle keeps half of `keep`, at its end all of it.
+  LOAM_FN float free_share(const ColliderView &collider, Vec3<float> start, Vec3<float> way, float way_length) const {
+    constexpr int max_advances = 32;
+    const float horizon = way_length + margin;
+    float distance = distance_to_mesh(collider.nodes, collider.triangles, start, horizon);
+    if (distance >= horizon) return 1.0f;
+    const float keep = minimum(margin, distance);
+    // Half a margin is given to a particle in the surface itself, which has no side yet, to get out on the one it is pushed to.
+    float advance = distance > 1e-3f * margin ? distance - 0.5f * keep : 0.5f * margin;
+    float share = 0.0f, good = 0.0f;
+    for (int i = 0; i < max_advances && advance > 1e-3f * keep; ++i) {
+      share = minimum(1.0f, share + advance / way_length);
+      distance = distance_to_mesh(collider.nodes, collider.triangles, start + share * way, horizon);
+      if (distance >= keep) good = share;
+      if (share >= 1.0f) break;
+      advance = distance - 0.5f * keep;
+    }
+    return good;
+  }
+};
+
+} // namespace loam
