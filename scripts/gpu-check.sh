@@ -39,11 +39,14 @@ step() {
 }
 
 options=(-DCMAKE_BUILD_TYPE=Release -DLOAM_CUDA=ON -DCMAKE_CUDA_ARCHITECTURES="$architecture" -DLOAM_WARNINGS_AS_ERRORS=OFF)
-if [[ -d .carry/usr ]]; then
-  carried=$PWD/.carry/usr
+if [[ -f .carry/libraries.tar.gz ]]; then
+  rm -rf build/carried
+  mkdir -p build/carried
+  tar --extract --gzip --file .carry/libraries.tar.gz --directory build/carried
+  carried=$PWD/build/carried/usr
   options+=(-DCMAKE_PREFIX_PATH="$carried" -DCMAKE_LIBRARY_ARCHITECTURE=x86_64-linux-gnu -DCMAKE_LIBRARY_PATH="$carried/lib/x86_64-linux-gnu")
   export C_INCLUDE_PATH=$carried/include CPLUS_INCLUDE_PATH=$carried/include LIBRARY_PATH=$carried/lib/x86_64-linux-gnu LD_LIBRARY_PATH=$carried/lib/x86_64-linux-gnu
-  export PKG_CONFIG_PATH=$carried/lib/x86_64-linux-gnu/pkgconfig:$carried/share/pkgconfig PKG_CONFIG_SYSROOT_DIR=$PWD/.carry
+  export PKG_CONFIG_PATH=$carried/lib/x86_64-linux-gnu/pkgconfig:$carried/share/pkgconfig PKG_CONFIG_SYSROOT_DIR=$PWD/build/carried
 fi
 generator=()
 if command -v ninja >/dev/null; then generator=(-G Ninja); fi

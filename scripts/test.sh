@@ -56,6 +56,7 @@ step_headers() {
   done
   for compiler in gcc clang; do
     "$compiler" -std=c99 "${warnings[@]}" samples/*.c
+    # shellcheck disable=SC2016
     sed -n '/^```c$/,/^```$/{/^```/!p}' README.md | "$compiler" -std=c99 -x c "${warnings[@]}" -
   done
   echo "samples/*.c and the program in README.md: C99"
