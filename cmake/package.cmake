@@ -3,6 +3,12 @@ add_library(loam::loam ALIAS loam)
 set_target_properties(loam PROPERTIES
   INTERFACE_INCLUDE_DIRECTORIES "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>;$<INSTALL_INTERFACE:include>")
 
+if(UNIX AND NOT APPLE)
+  set(symbol_map ${PROJECT_SOURCE_DIR}/cmake/exported_symbols.map)
+  target_link_options(loam PRIVATE -Wl,--version-script=${symbol_map})
+  set_property(TARGET loam APPEND PROPERTY LINK_DEPENDS ${symbol_map})
+endif()
+
 if(LOAM_INSTALL)
   include(GNUInstallDirs)
   include(CMakePackageConfigHelpers)

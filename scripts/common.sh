@@ -8,13 +8,15 @@ die() { printf 'error: %s\n' "$*" >&2; exit 1; }
 
 jobs() { nproc 2>/dev/null || echo 2; }
 
-# configure PRESET [cmake options]: with ccache, where there is one.
+# configure PRESET [cmake options]: quietly, unless it fails; with ccache, where there is one.
 configure() {
-  local preset=$1
+  local preset=$1 options=() output
   shift
-  local options=()
   if command -v ccache >/dev/null; then
-    options+=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_CUDA_COMPILER_LAUNCHER=ccache)
+    export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
+    options=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_CUDA_COMPILER_LAUNCHER=ccache)
   fi
-  cmake --preset "$preset" "${options[@]}" "$@"
+  output=$(cmake --preset "$preset" "${options[@]}" "$@" 2>&1) || { printf '%s\n' "$output"; die "configuring $preset failed"; }
+  grep -E '^CMake Warning|CUDA compiler identification' <<<"$output" || true
+  echo "configured $preset in build/$preset"
 }

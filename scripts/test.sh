@@ -100,7 +100,8 @@ step_tidy() {
   # Sources that this build does not compile (another system's, say) have no command, and are left out.
   sources 'runtime/api/*.cpp' 'runtime/scene/*.cpp' 'runtime/schedule/*.cpp' 'runtime/solver/*.cpp' 'samples/*.cpp' |
     while IFS= read -r -d '' path; do grep -qF "$PWD/$path" "$database/compile_commands.json" && printf '%s\0' "$path"; done |
-    xargs -0 -r -P "$(jobs)" -n 1 "$(tool clang-tidy)" -p "$database" --quiet --extra-arg=-Wno-unknown-warning-option
+    xargs -0 -r -P "$(jobs)" -n 1 "$(tool clang-tidy)" -p "$database" --quiet --extra-arg=-Wno-unknown-warning-option \
+      2> >(grep -vE '^[0-9]+ warnings? generated' >&2)
   echo "clang-tidy has no complaint"
 }
 
