@@ -1,0 +1,13 @@
+// Reads triangle meshes from Wavefront OBJ files.
+#pragma once
+
+#include <filesystem>
+
+#include "mesh.h"
+
+namespace runner {
+
+// Polygons are split into triangles. Throws Error naming the file, and the vertex or face where one is at fault.
+Mesh read_obj(const std::filesystem::path &path);
+
+} // namespace runner

@@ -1,0 +1,187 @@
+#include "picture/ray_scene.h"
+
+#include <cmath>
+#include <limits>
+
+#include <embree3/rtcore.h>
+#include <fmt/format.h>
+
+#include "error.h"
+#include "picture/lathe.h"
+
+namespace runner {
+namespace {
+
+Vector3 rotate(const std::array<float, 4> &rotation, Vector3 v) {
+  const Vector3 axis = {rotation[0], rotation[1], rotation[2]};
+  const Vector3 t = 2.0f * cross(axis, v);
+  return v + rotation[3] * t + cross(axis, t);
+}
+
+RTCRay to_embree(const Ray &ray, float from, float to) {
+  RTCRay result{};
+  result.org_x = ray.origin.x;
+  result.org_y = ray.origin.y;
+  result.org_z = ray.origin.z;
+  result.dir_x = ray.direction.x;
+  result.dir_y = ray.direction.y;
+  result.dir_z = ray.direction.z;
+  result.tnear = from;
+  result.tfar = to;
+  result.mask = std::numeric_limits<unsigned>::max();
+  return result;
+}
+
+// The normal of a triangle mesh between its vertices' normals; facing the ray's origin.
+Vector3 smooth_normal(RTCScene scene, const RTCRayHit &found) {
+  Vector3 normal;
+  rtcInterpolate0(rtcGetGeometry(scene, found.hit.geomID), found.hit.primID, found.hit.u, found.hit.v,
+                  RTC_BUFFER_TYPE_VERTEX_ATTRIBUTE, 0, &normal.x, 3);
+  const Vector3 flat = {found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z};
+  if (!(dot(normal, normal) > 0)) normal = flat;
+  normal = normalized(normal);
+  const Vector3 direction = {found.ray.dir_x, found.ray.dir_y, found.ray.dir_z};
+  return dot(flat, direction) * dot(flat, normal) > 0 ? -normal : normal;
+}
+
+} // namespace
+
+RayScene::RayScene(const Scene &scene) {
+  device_ = rtcNewDevice(nullptr);
+  if (device_ == nullptr)
+    throw Error(fmt::format("Embree cannot be started (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));
+  opaque_ = rtcNewScene(device_);
+  glass_ = rtcNewScene(device_);
+
+  for (const SceneDecoration &decoration : scene.decorations) {
+    if (decoration.appearance == Appearance::hidden) continue;
+    const Mesh mesh = make_rounded_cylinder(decoration.radius, decoration.half_height, decoration.rounding);
+    const bool glass = decoration.appearance == Appearance::glass;
+    if (!glass) solids_.push_back({decoration.appearance, decoration.colour, decoration.center});
+    has_glass_ |= glass;
+    add_mesh(glass ? glass_ : opaque_, mesh, decoration.center, {0, 0, 0, 1});
+  }
+  for (const SceneCollider &collider : scene.colliders) {
+    if (collider.appearance == Appearance::hidden) continue;
+    if (collider.kind == LOAM_COLLIDER_PLANE) {
+      // One plane is the ground; more would wall the camera in.
+      if (!ground_) ground_ = Ground{collider.position, rotate(collider.rotation, {0, 1, 0}), collider.colour};
+      continue;
+    }
+    const bool glass = collider.appearance == Appearance::glass;
+    if (!glass) solids_.push_back({collider.appearance, collider.colour, collider.position});
+    has_glass_ |= glass;
+    add_mesh(glass ? glass_ : opaque_, scene.meshes.at(collider.file), collider.position, collider.rotation);
+  }
+  rtcCommitScene(glass_);
+
+  spheres_geometry_ = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+  rtcSetGeometryBuildQuality(spheres_geometry_, RTC_BUILD_QUALITY_MEDIUM);
+  spheres_id_ = rtcAttachGeometry(opaque_, spheres_geometry_);
+}
+
+RayScene::~RayScene() {
+  if (spheres_geometry_ != nullptr) rtcReleaseGeometry(spheres_geometry_);
+  if (glass_ != nullptr) rtcReleaseScene(glass_);
+  if (opaque_ != nullptr) rtcReleaseScene(opaque_);
+  if (device_ != nullptr) rtcReleaseDevice(device_);
+}
+
+void RayScene::add_mesh(RTCSceneTy *to, const Mesh &mesh, Vector3 position, const std::array<float, 4> &rotation) {
+  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  const std::size_t count = mesh.vertices.size();
+  auto *vertices = static_cast<Vector3 *>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vector3), count));
+  auto *indices = static_cast<std::uint32_t *>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                       3 * sizeof(std::uint32_t), mesh.triangle_count()));
+  rtcSetGeometryVertexAttributeCount(geometry, 1);
+  auto *normals = static_cast<Vector3 *>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX_ATTRIBUTE, 0, RTC_FORMAT_FLOAT3, sizeof(Vector3), count));
+  if (vertices == nullptr || indices == nullptr || normals == nullptr) throw Error("out of memory for the picture's meshes");
+  for (std::size_t i = 0; i < count; ++i) {
+    vertices[i] = rotate(rotation, mesh.vertices[i]) + position;
+    normals[i] = {};
+    low_ = minimum(low_, vertices[i]);
+    high_ = maximum(high_, vertices[i]);
+  }
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+    std::uint32_t corner[3];
+    for (std::size_t c = 0; c < 3; ++c) indices[i + c] = corner[c] = mesh.indices[i + c];
+    const Vector3 area = cross(vertices[corner[1]] - vertices[corner[0]], vertices[corner[2]] - vertices[corner[0]]);
+    for (const std::uint32_t vertex : corner) normals[vertex] += area;
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(to, geometry);
+  rtcReleaseGeometry(geometry);
+}
+
+void RayScene::set_particles(std::vector<float> spheres) {
+  spheres_ = std::move(spheres);
+  if (!bounds_known_) { // once: the ground's light is laid out over these bounds, and must not wander from frame to frame
+    for (std::size_t i = 0; i + 3 < spheres_.size(); i += 4) {
+      const Vector3 center = {spheres_[i], spheres_[i + 1], spheres_[i + 2]};
+      if (!std::isfinite(dot(center, center))) continue;
+      low_ = minimum(low_, center);
+      high_ = maximum(high_, center);
+    }
+    lift_ = 2e-5f * length(high_ - low_);
+    bounds_known_ = true;
+  }
+  rtcSetSharedGeometryBuffer(spheres_geometry_, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, spheres_.data(), 0,
+                             4 * sizeof(float), spheres_.size() / 4);
+  rtcCommitGeometry(spheres_geometry_);
+  rtcCommitScene(opaque_);
+}
+
+Hit RayScene::closest(const Ray &ray) const {
+  Hit hit;
+  if (ground_) {
+    const float approach = dot(ray.direction, ground_->normal);
+    const float distance = dot(ground_->point - ray.origin, ground_->normal) / approach;
+    if (approach < 0 && distance > 0) hit = {Hit::ground, distance, ray.at(distance), ground_->normal, 0};
+  }
+  RTCRayHit found{};
+  found.ray = to_embree(ray, 0, hit.distance);
+  found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(opaque_, &context, &found);
+  if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
+  hit.distance = found.ray.tfar;
+  hit.position = ray.at(hit.distance);
+  if (found.hit.geomID == spheres_id_) {
+    hit.kind = Hit::particle;
+    hit.index = found.hit.primID;
+    const float *sphere = &spheres_[4 * static_cast<std::size_t>(hit.index)];
+    hit.normal = normalized(hit.position - Vector3{sphere[0], sphere[1], sphere[2]});
+  } else {
+    hit.kind = Hit::solid;
+    hit.index = found.hit.geomID;
+    hit.normal = smooth_normal(opaque_, found);
+  }
+  return hit;
+}
+
+bool RayScene::occluded(const Ray &ray) const {
+  if (ground_ && dot(ray.direction, ground_->normal) < 0 && dot(ray.origin - ground_->point, ground_->normal) > 0)
+    return true;
+  RTCRay shadow = to_embree(ray, 0, 1e30f);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(opaque_, &context, &shadow);
+  return shadow.tfar < 0;
+}
+
+std::optional<Hit> RayScene::glass(const Ray &ray, float from, float to) const {
+  if (!has_glass_) return std::nullopt;
+  RTCRayHit found{};
+  found.ray = to_embree(ray, from, to);
+  found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(glass_, &context, &found);
+  if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  return Hit{Hit::solid, found.ray.tfar, ray.at(found.ray.tfar), smooth_normal(glass_, found), found.hit.geomID};
+}
+
+} // namespace runner

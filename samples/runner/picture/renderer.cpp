@@ -1,0 +1,239 @@
+#include "picture/renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <tbb/blocked_range2d.h>
+#include <tbb/parallel_for.h>
+
+#include "picture/sampling.h"
+#include "picture/surface_colour.h"
+#include "picture/tone_curve.h"
+
+namespace runner {
+namespace {
+
+constexpr float pi = std::numbers::pi_v<float>;
+
+Vector3 up_of(const Scene &scene) {
+  const Vector3 gravity = {scene.world.gravity[0], scene.world.gravity[1], scene.world.gravity[2]};
+  return length(gravity) > 0 ? -gravity : Vector3{0, 1, 0};
+}
+
+} // namespace
+
+Renderer::Renderer(const Scene &scene)
+    : scene_(&scene), camera_(*scene.camera), environment_(scene.light, up_of(scene)), rays_(scene) {
+  forward_ = normalized(camera_.target - camera_.eye);
+  right_ = normalized(cross(forward_, camera_.up));
+  up_ = cross(right_, forward_);
+}
+
+Image Renderer::render(const Particles &particles) {
+  place_particles(particles);
+  if (rays_.ground()) ground_light_.emplace(rays_, environment_);
+
+  const int width = camera_.width, height = camera_.height;
+  const auto at = [&](int x, int y) { return static_cast<std::size_t>(y) * width + x; };
+  const tbb::blocked_range2d<int> pixels(0, height, 16, 0, width, 16);
+  const auto each_pixel = [&](const auto &visit) {
+    tbb::parallel_for(pixels, [&](const tbb::blocked_range2d<int> &tile) {
+      for (int y = tile.rows().begin(); y < tile.rows().end(); ++y)
+        for (int x = tile.cols().begin(); x < tile.cols().end(); ++x) visit(x, y);
+    });
+  };
+
+  std::vector<Sample> first(at(0, height));
+  each_pixel([&](int x, int y) {
+    first[at(x, y)] = sample(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, pixel_noise(x, y));
+  });
+
+  // More samples only where something begins or ends: in most of a picture one is enough.
+  Image image{width, height, std::vector<std::uint8_t>(3 * at(0, height))};
+  each_pixel([&](int x, int y) {
+    const Sample &own = first[at(x, y)];
+    bool edge = false;
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) {
+        const int nx = std::clamp(x + dx, 0, width - 1), ny = std::clamp(y + dy, 0, height - 1);
+        edge |= differ(own, first[at(nx, ny)]);
+      }
+    Vector3 colour = own.display;
+    if (edge) {
+      constexpr float offsets[4][2] = {{0.375f, 0.125f}, {0.875f, 0.375f}, {0.125f, 0.625f}, {0.625f, 0.875f}};
+      for (int i = 0; i < 4; ++i)
+        colour += sample(static_cast<float>(x) + offsets[i][0], static_cast<float>(y) + offsets[i][1],
+                         fraction(pixel_noise(x, y) + 0.2f * static_cast<float>(i + 1)))
+                      .display;
+      colour = 0.2f * colour;
+    }
+    // Half a level of noise keeps gradients free of bands.
+    const float dither = pixel_noise(x + 71, y + 113) - 0.5f;
+    for (int channel = 0; channel < 3; ++channel)
+      image.pixels[3 * at(x, y) + channel] =
+          static_cast<std::uint8_t>(std::clamp(255 * colour[channel] + 0.5f + dither, 0.0f, 255.0f));
+  });
+  return image;
+}
+
+void Renderer::place_particles(const Particles &particles) {
+  const std::size_t count = particles.count();
+  std::vector<float> spheres(4 * count);
+  radii_.resize(count);
+  colours_.resize(count);
+  const float radius = 0.47f * scene_->world.kernel_radius;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t id = particles.ids[i];
+    const Vector3 x = particles.positions[i];
+    radii_[i] = radius * (0.88f + 0.2f * hash_unit(id + 0x9e3779b9u));
+    spheres[4 * i] = x.x;
+    spheres[4 * i + 1] = x.y;
+    spheres[4 * i + 2] = x.z;
+    spheres[4 * i + 3] = radii_[i];
+    const std::size_t material = std::min<std::size_t>(particles.materials[i], scene_->materials.size() - 1);
+    colours_[i] = grain_colour(scene_->materials[material].colour, scene_->materials[material].colour_variation, id);
+  }
+  rays_.set_particles(std::move(spheres));
+  grain_lights_.resize(count);
+  grain_light_states_ = std::vector<std::atomic<std::uint8_t>>(count);
+}
+
+Ray Renderer::camera_ray(float x, float y) const {
+  const float half = std::tan(camera_.vertical_field_of_view * pi / 360);
+  const float scale = 2 * half / static_cast<float>(camera_.height);
+  const float across = (x - 0.5f * static_cast<float>(camera_.width)) * scale;
+  const float up = (0.5f * static_cast<float>(camera_.height) - y) * scale;
+  return {camera_.eye, normalized(forward_ + across * right_ + up * up_)};
+}
+
+bool Renderer::differ(const Sample &a, const Sample &b) {
+  return a.kind != b.kind || a.index != b.index || a.panes != b.panes ||
+         dot(a.normal - b.normal, a.normal - b.normal) > 0.08f;
+}
+
+Renderer::Sample Renderer::sample(float x, float y, float noise) {
+  const Ray ray = camera_ray(x, y);
+  const Hit hit = rays_.closest(ray);
+  Sample result;
+  result.kind = hit.kind;
+  result.index = hit.index;
+  result.normal = hit.normal;
+
+  // Every pane in front of it mirrors the studio and takes a little of what is behind.
+  Vector3 light, passing = {1, 1, 1};
+  float from = 0;
+  while (result.panes < 8) {
+    const std::optional<Hit> pane = rays_.glass(ray, from, hit.distance);
+    if (!pane) break;
+    const float cosine = -dot(pane->normal, ray.direction);
+    const float mirror = glass_reflectance(cosine);
+    light += mirror * (passing * environment_.mirrored(reflect(ray.direction, pane->normal)));
+    // The longer the way through the pane, the greener.
+    const float way = 1 / std::fmax(cosine, 0.12f);
+    passing = (1 - mirror) * (passing * Vector3{1 - 0.016f * way, 1 - 0.008f * way, 1 - 0.011f * way});
+    from = pane->distance + 2 * rays_.lift();
+    ++result.panes;
+  }
+  const float across = x / static_cast<float>(camera_.width), down = y / static_cast<float>(camera_.height);
+  light += passing * shade(ray, hit, noise, environment_.background(across, down));
+
+  const float cx = across - 0.5f, cy = down - 0.5f;
+  const float vignette = 1 - 0.35f * (cx * cx + cy * cy);
+  result.display = display_colour((environment_.exposure() * vignette) * light);
+  return result;
+}
+
+Vector3 Renderer::shade(const Ray &ray, const Hit &hit, float noise, Vector3 background) {
+  switch (hit.kind) {
+  case Hit::particle:
+    return shade_particle(ray, hit, noise);
+  case Hit::solid:
+    return shade_solid(ray, hit, noise);
+  case Hit::ground: {
+    const Vector3 lit = (1 / pi) * (rays_.ground()->colour * ground_light_->irradiance(hit.position));
+    // The ground runs into the backdrop without a horizon.
+    const float reach = length(rays_.high() - rays_.low());
+    const float away = std::fmax(0.0f, length(hit.position - camera_.target) / reach - 0.9f);
+    return mix(background, lit, std::exp(-1.1f * away * away));
+  }
+  default:
+    return background;
+  }
+}
+
+GrainLight Renderer::grain_light(std::uint32_t index) {
+  std::atomic<std::uint8_t> &state = grain_light_states_[index];
+  if (state.load(std::memory_order_acquire) == stored) return grain_lights_[index];
+  const Vector3 center = {rays_.sphere(index)[0], rays_.sphere(index)[1], rays_.sphere(index)[2]};
+  // Matter around a grain is lit about a third as well as open matter is, and passes its own colour on.
+  const Vector3 sky = environment_.ambient(environment_.up());
+  const Vector3 bounce = 0.30f * (colours_[index] * (sky + (0.25f / pi) * environment_.key().colour));
+  const GrainLight light = gather_grain_light(rays_, environment_, center, radii_[index], bounce);
+  std::uint8_t expected = unknown;
+  if (state.compare_exchange_strong(expected, being_stored)) {
+    grain_lights_[index] = light;
+    state.store(stored, std::memory_order_release);
+  }
+  return light;
+}
+
+Vector3 Renderer::direct(const FarLight &light, const Hit &hit, Vector3 view, float noise, int rays, float gloss) const {
+  const float facing = dot(hit.normal, light.direction);
+  if (facing <= 0) return {};
+  const Vector3 start = hit.position + rays_.lift() * hit.normal;
+  const Frame frame(light.direction);
+  int seen = 0;
+  for (int i = 0; i < rays; ++i) {
+    const Vector3 disc = disc_point(i, rays, noise);
+    const Vector3 direction =
+        normalized(light.direction + light.spread * (disc.x * frame.tangent + disc.y * frame.bitangent));
+    if (!rays_.occluded({start, direction})) ++seen;
+  }
+  if (seen == 0) return {};
+  const Vector3 half = normalized(light.direction + view);
+  const float highlight = gloss * 4.0f * std::pow(std::fmax(0.0f, dot(half, hit.normal)), 40.0f);
+  return (static_cast<float>(seen) / static_cast<float>(rays) * facing * (1 + highlight)) * light.colour;
+}
+
+Vector3 Renderer::shade_particle(const Ray &ray, const Hit &hit, float noise) {
+  Vector3 arriving = grain_light(hit.index).irradiance(hit.normal);
+  arriving += direct(environment_.key(), hit, -ray.direction, noise, 1, 0.12f);
+  arriving += direct(environment_.rim(), hit, -ray.direction, noise, 1, 0.10f);
+  return (1 / pi) * (colours_[hit.index] * arriving);
+}
+
+Vector3 Renderer::shade_solid(const Ray &ray, const Hit &hit, float noise) const {
+  const Solid &solid = rays_.solids()[hit.index];
+  const Vector3 mirrored = reflect(ray.direction, hit.normal);
+  const Frame frame(hit.normal);
+  const Vector3 start = hit.position + rays_.lift() * hit.normal;
+  constexpr int sky_rays = 10;
+  Vector3 arriving;
+  float open = 0;
+  for (int i = 0; i < sky_rays; ++i) {
+    const Vector3 direction = cosine_direction(i, sky_rays, noise, hit.normal, frame);
+    if (rays_.occluded({start, direction})) continue;
+    arriving += (pi / sky_rays) * environment_.ambient(direction);
+    open += 1.0f / sky_rays;
+  }
+  arriving += (0.08f * pi * (1 - open)) * environment_.ambient(environment_.up());
+  if (solid.appearance == Appearance::metal) {
+    arriving += direct(environment_.key(), hit, -ray.direction, noise, 2, 0.6f);
+    const Vector3 mirror = rays_.occluded({start, mirrored}) ? 0.15f * arriving : environment_.mirrored(mirrored);
+    return solid.colour * (0.72f * mirror + (0.35f / pi) * arriving);
+  }
+  arriving += direct(environment_.key(), hit, -ray.direction, noise, 3, 0.15f);
+  arriving += direct(environment_.rim(), hit, -ray.direction, noise, 1, 0.15f);
+  Vector3 colour = solid.colour;
+  Vector3 sheen;
+  if (solid.appearance == Appearance::wood) {
+    colour = wood_colour(solid.colour, hit.position - solid.origin, 0.012f * length(rays_.high() - rays_.low()));
+    // A thin coat of varnish.
+    const float away = 1 + dot(ray.direction, hit.normal);
+    sheen = (0.35f * (0.04f + 0.5f * away * away * away * away * away) * open) * environment_.mirrored(mirrored);
+  }
+  return (1 / pi) * (colour * arriving) + sheen;
+}
+
+} // namespace runner

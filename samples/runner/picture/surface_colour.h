@@ -1,0 +1,16 @@
+// The colours of things: grains that differ, wood with its rings.
+#pragma once
+
+#include <cstdint>
+
+#include "vector.h"
+
+namespace runner {
+
+// The colour of one grain of a material; `variation` is the share by which grains differ.
+Vector3 grain_colour(Vector3 colour, float variation, std::uint32_t id);
+
+// Wood turned on a lathe and cut along x, at a point relative to the piece's centre. `size` is the width of a ring.
+Vector3 wood_colour(Vector3 colour, Vector3 point, float size);
+
+} // namespace runner

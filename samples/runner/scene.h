@@ -1,0 +1,112 @@
+// A scene as its file describes it: what to simulate, for how long, and how to look at it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <loam/loam.h>
+
+#include "mesh.h"
+#include "vector.h"
+
+namespace runner {
+
+// Where a table or value stands in the scene file, for messages about it that come later.
+struct Place {
+  std::uint32_t line = 0;
+  std::string key;
+};
+
+struct SceneMaterial {
+  Place place;
+  std::string name;
+  loam_material_def def{};
+  Vector3 colour = {0.76f, 0.62f, 0.42f}; // linear RGB
+  float colour_variation = 0.15f;         // share by which grains differ
+};
+
+struct SceneRegion {
+  std::uint32_t kind = LOAM_REGION_NONE;
+  Vector3 center;
+  std::array<float, 4> rotation = {0, 0, 0, 1};
+  Vector3 half_extents;
+  float radius = 0;
+  float half_height = 0;
+  std::filesystem::path file; // MESH
+};
+
+struct SceneEmitter {
+  Place place;
+  std::string material;
+  SceneRegion region, cut;
+  loam_fill_def def{}; // without material, region and cut
+};
+
+// How a collider or decoration looks. It has no part in the simulation.
+enum class Appearance { hidden, glass, matte, wood, metal };
+
+struct SceneCollider {
+  Place place;
+  std::uint32_t kind = LOAM_COLLIDER_PLANE;
+  std::filesystem::path file; // MESH
+  Vector3 position;
+  std::array<float, 4> rotation = {0, 0, 0, 1};
+  float friction = 0;
+  Appearance appearance = Appearance::matte;
+  Vector3 colour = {0.5f, 0.5f, 0.5f};
+};
+
+// An upright cylinder with rounded edges that is only looked at.
+struct SceneDecoration {
+  Vector3 center;
+  float radius = 0;
+  float half_height = 0;
+  float rounding = 0;
+  Appearance appearance = Appearance::matte;
+  Vector3 colour = {0.5f, 0.5f, 0.5f};
+};
+
+// An axis-aligned box in which particles are counted frame by frame.
+struct SceneWatch {
+  Vector3 low, high;
+};
+
+struct SceneCamera {
+  Vector3 eye, target;
+  Vector3 up = {0, 1, 0};
+  float vertical_field_of_view = 35; // degrees
+  int width = 960, height = 720;
+};
+
+struct SceneLight {
+  Vector3 direction = {-0.5f, 0.8f, 0.45f}; // towards the key light
+  Vector3 colour = {3.2f, 2.9f, 2.5f};
+  Vector3 sky = {0.42f, 0.50f, 0.62f};           // from straight above
+  Vector3 horizon = {0.30f, 0.29f, 0.29f};       // from all around
+  Vector3 background = {0.055f, 0.062f, 0.072f}; // behind everything, where no ground is seen
+  float exposure = 1;
+};
+
+struct Scene {
+  std::filesystem::path path;
+  std::string title;
+  loam_world_def world{}; // without hooks and particle_capacity, which the runner decides
+  Place world_place;
+  double frame_rate = 60;
+  std::uint64_t frames = 120;
+  std::vector<SceneMaterial> materials;
+  std::vector<SceneEmitter> emitters;
+  std::vector<SceneCollider> colliders;
+  std::vector<SceneDecoration> decorations;
+  std::optional<SceneWatch> watch;
+  std::optional<SceneCamera> camera; // without one there are no pictures
+  SceneLight light;
+  std::map<std::filesystem::path, Mesh> meshes; // every file that a region or a collider names
+};
+
+} // namespace runner

@@ -1,0 +1,317 @@
+#include "scene_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "error.h"
+#include "obj_reader.h"
+#include "toml_table.h"
+
+namespace runner {
+namespace {
+
+const std::vector<std::pair<std::string_view, std::uint32_t>> laws = {
+    {"elastic", LOAM_LAW_ELASTIC}, {"von_mises", LOAM_LAW_VON_MISES}, {"drucker_prager", LOAM_LAW_DRUCKER_PRAGER}};
+const std::vector<std::pair<std::string_view, std::uint32_t>> solvers = {{"gauss_seidel", LOAM_SOLVER_GAUSS_SEIDEL},
+                                                                         {"jacobi", LOAM_SOLVER_JACOBI}};
+const std::vector<std::pair<std::string_view, std::uint32_t>> plasticities = {
+    {"implicit", LOAM_PLASTICITY_IMPLICIT}, {"semi_implicit", LOAM_PLASTICITY_SEMI_IMPLICIT}};
+const std::vector<std::pair<std::string_view, std::uint32_t>> samplings = {{"poisson_disk", LOAM_SAMPLING_POISSON_DISK},
+                                                                           {"lattice", LOAM_SAMPLING_LATTICE}};
+const std::vector<std::pair<std::string_view, std::uint32_t>> regions = {{"box", LOAM_REGION_BOX},
+                                                                         {"sphere", LOAM_REGION_SPHERE},
+                                                                         {"cylinder", LOAM_REGION_CYLINDER},
+                                                                         {"mesh", LOAM_REGION_MESH}};
+const std::vector<std::pair<std::string_view, std::uint32_t>> collider_kinds = {{"plane", LOAM_COLLIDER_PLANE},
+                                                                                {"mesh", LOAM_COLLIDER_MESH}};
+const std::vector<std::pair<std::string_view, Appearance>> appearances = {{"hidden", Appearance::hidden},
+                                                                          {"glass", Appearance::glass},
+                                                                          {"matte", Appearance::matte},
+                                                                          {"wood", Appearance::wood},
+                                                                          {"metal", Appearance::metal}};
+
+// Defaults come from the library, and they cannot fail for the struct sizes of its own headers unless it is a different version.
+void expect_ok(loam_status status, const char *call) {
+  if (status != LOAM_OK) throw Error(fmt::format("{}: {}: {}", call, loam_status_name(status), loam_last_error()));
+}
+
+class Reader {
+public:
+  explicit Reader(const std::filesystem::path &path) { scene_.path = path; }
+
+  Scene read(const toml::table &document) {
+    TomlTable root(document, scene_.path, "");
+    root.read("title", scene_.title);
+    read_world(root);
+    read_time(root);
+    for (TomlTable &table : root.tables("materials")) read_material(table);
+    for (TomlTable &table : root.tables("emitters")) read_emitter(table);
+    for (TomlTable &table : root.tables("colliders")) read_collider(table);
+    for (TomlTable &table : root.tables("decorations")) read_decoration(table);
+    read_watch(root);
+    read_camera(root);
+    read_light(root);
+    root.finish();
+    if (scene_.materials.empty()) root.fail("materials", "the scene has no material ([[materials]])");
+    if (scene_.emitters.empty()) root.fail("emitters", "the scene has no emitter ([[emitters]])");
+    return std::move(scene_);
+  }
+
+private:
+  void read_world(TomlTable &root) {
+    loam_world_def &def = scene_.world;
+    expect_ok(loam_world_def_default(&def, sizeof def), "loam_world_def_default");
+    std::optional<TomlTable> table = root.table("world");
+    if (!table) return;
+    scene_.world_place = table->place();
+    Vector3 gravity = {def.gravity[0], def.gravity[1], def.gravity[2]};
+    table->read("gravity", gravity);
+    for (int axis = 0; axis < 3; ++axis) def.gravity[axis] = gravity[axis];
+    table->read("kernel_radius", def.kernel_radius);
+    table->read("substeps", def.substeps);
+    table->read("iterations", def.iterations);
+    table->read("solver", def.solver, solvers);
+    table->read("plasticity", def.plasticity, plasticities);
+    table->read("velocity_smoothing", def.velocity_smoothing);
+    table->read("minimum_distance", def.minimum_distance);
+    table->read("gradient_cutoff", def.gradient_cutoff);
+    table->finish();
+  }
+
+  void read_time(TomlTable &root) {
+    std::optional<TomlTable> table = root.table("time");
+    if (!table) return;
+    table->read("frame_rate", scene_.frame_rate);
+    table->read("frames", scene_.frames);
+    // The library takes steps of at most one second.
+    if (!(scene_.frame_rate >= 1 && scene_.frame_rate <= 1e6))
+      table->fail("frame_rate", fmt::format("{} is not between 1 and 1000000 frames a second", scene_.frame_rate));
+    if (scene_.frames == 0) table->fail("frames", "at least one frame is needed");
+    table->finish();
+  }
+
+  void read_material(TomlTable &table) {
+    SceneMaterial material;
+    material.place = table.place();
+    table.require("name");
+    table.require("law");
+    table.read("name", material.name);
+    std::uint32_t law = LOAM_LAW_ELASTIC;
+    table.read("law", law, laws);
+    loam_material_def &def = material.def;
+    expect_ok(loam_material_def_default(law, &def, sizeof def), "loam_material_def_default");
+    if (material.name.empty() || material.name.size() >= sizeof def.name)
+      table.fail("name", fmt::format("must have 1 to {} characters", sizeof def.name - 1));
+    for (const SceneMaterial &other : scene_.materials)
+      if (other.name == material.name) table.fail("name", fmt::format("there is a material \"{}\" already", material.name));
+    std::memset(def.name, 0, sizeof def.name);
+    std::memcpy(def.name, material.name.data(), material.name.size());
+    table.read("density", def.density);
+    table.read("youngs_modulus", def.youngs_modulus);
+    table.read("poissons_ratio", def.poissons_ratio);
+    table.read("yield_stress", def.yield_stress);
+    if (table.has("friction_angle_degrees")) {
+      double degrees = 0;
+      table.read("friction_angle_degrees", degrees);
+      def.friction_angle = static_cast<float>(degrees * std::numbers::pi / 180);
+    }
+    table.read("cohesion", def.cohesion);
+    table.read("colour", material.colour);
+    table.read("colour_variation", material.colour_variation);
+    table.finish();
+    scene_.materials.push_back(material);
+  }
+
+  void read_emitter(TomlTable &table) {
+    SceneEmitter emitter;
+    emitter.place = table.place();
+    loam_fill_def &def = emitter.def;
+    expect_ok(loam_fill_def_default(&def, sizeof def), "loam_fill_def_default");
+    table.require("material");
+    table.read("material", emitter.material);
+    const bool known = std::any_of(scene_.materials.begin(), scene_.materials.end(),
+                                   [&](const SceneMaterial &material) { return material.name == emitter.material; });
+    if (!known) table.fail("material", fmt::format("no material is named \"{}\"", emitter.material));
+    table.require("region");
+    emitter.region = read_region(*table.table("region"));
+    if (std::optional<TomlTable> cut = table.table("cut")) emitter.cut = read_region(*cut);
+    table.read("sampling", def.sampling, samplings);
+    table.read("spacing", def.spacing);
+    table.read("jitter", def.jitter);
+    table.read("inset", def.inset);
+    table.read("seed", def.seed);
+    Vector3 velocity;
+    table.read("velocity", velocity);
+    for (int axis = 0; axis < 3; ++axis) def.velocity[axis] = velocity[axis];
+    table.finish();
+    scene_.emitters.push_back(emitter);
+  }
+
+  SceneRegion read_region(TomlTable table) {
+    SceneRegion region;
+    table.require("kind");
+    table.read("kind", region.kind, regions);
+    table.read("center", region.center);
+    region.rotation = read_rotation(table);
+    if (region.kind == LOAM_REGION_BOX) {
+      table.require("half_extents");
+      table.read("half_extents", region.half_extents);
+    }
+    if (region.kind == LOAM_REGION_SPHERE || region.kind == LOAM_REGION_CYLINDER) {
+      table.require("radius");
+      table.read("radius", region.radius);
+    }
+    if (region.kind == LOAM_REGION_CYLINDER) {
+      table.require("half_height");
+      table.read("half_height", region.half_height);
+    }
+    if (region.kind == LOAM_REGION_MESH) region.file = read_mesh(table);
+    table.finish();
+    return region;
+  }
+
+  void read_collider(TomlTable &table) {
+    SceneCollider collider;
+    collider.place = table.place();
+    loam_collider_def def{};
+    expect_ok(loam_collider_def_default(&def, sizeof def), "loam_collider_def_default");
+    collider.friction = def.friction;
+    table.require("kind");
+    table.read("kind", collider.kind, collider_kinds);
+    if (collider.kind == LOAM_COLLIDER_MESH) collider.file = read_mesh(table);
+    table.read("position", collider.position);
+    collider.rotation = read_rotation(table);
+    table.read("friction", collider.friction);
+    table.read("appearance", collider.appearance, appearances);
+    table.read("colour", collider.colour);
+    table.finish();
+    scene_.colliders.push_back(collider);
+  }
+
+  void read_decoration(TomlTable &table) {
+    SceneDecoration decoration;
+    table.require("radius");
+    table.require("half_height");
+    table.read("center", decoration.center);
+    table.read("radius", decoration.radius);
+    table.read("half_height", decoration.half_height);
+    table.read("rounding", decoration.rounding);
+    table.read("appearance", decoration.appearance, appearances);
+    table.read("colour", decoration.colour);
+    if (!(decoration.radius > 0)) table.fail("radius", "must be over 0");
+    if (!(decoration.half_height > 0)) table.fail("half_height", "must be over 0");
+    if (!(decoration.rounding >= 0 && decoration.rounding <= std::min(decoration.radius, decoration.half_height)))
+      table.fail("rounding", "must be 0 or more, and at most radius and half_height");
+    table.finish();
+    scene_.decorations.push_back(decoration);
+  }
+
+  void read_watch(TomlTable &root) {
+    std::optional<TomlTable> table = root.table("watch");
+    if (!table) return;
+    SceneWatch watch;
+    table->require("low");
+    table->require("high");
+    table->read("low", watch.low);
+    table->read("high", watch.high);
+    table->finish();
+    scene_.watch = watch;
+  }
+
+  void read_camera(TomlTable &root) {
+    std::optional<TomlTable> table = root.table("camera");
+    if (!table) return;
+    SceneCamera camera;
+    table->require("eye");
+    table->require("target");
+    table->read("eye", camera.eye);
+    table->read("target", camera.target);
+    table->read("up", camera.up);
+    table->read("vertical_field_of_view_degrees", camera.vertical_field_of_view);
+    table->read("width", camera.width);
+    table->read("height", camera.height);
+    if (!(camera.vertical_field_of_view > 0 && camera.vertical_field_of_view < 170))
+      table->fail("vertical_field_of_view_degrees", "must be over 0 and under 170");
+    if (camera.width < 16 || camera.width > 8192) table->fail("width", "must be between 16 and 8192 pixels");
+    if (camera.height < 16 || camera.height > 8192) table->fail("height", "must be between 16 and 8192 pixels");
+    if (!(length(cross(camera.target - camera.eye, camera.up)) > 0))
+      table->fail("eye", "eye, target and up must not lie on one line");
+    table->finish();
+    scene_.camera = camera;
+  }
+
+  void read_light(TomlTable &root) {
+    std::optional<TomlTable> table = root.table("light");
+    if (!table) return;
+    SceneLight &light = scene_.light;
+    table->read("direction", light.direction);
+    table->read("colour", light.colour);
+    table->read("sky", light.sky);
+    table->read("horizon", light.horizon);
+    table->read("background", light.background);
+    table->read("exposure", light.exposure);
+    if (!(length(light.direction) > 0)) table->fail("direction", "must not be zero");
+    table->finish();
+  }
+
+  std::array<float, 4> read_rotation(TomlTable &table) {
+    Vector3 axis = {0, 1, 0};
+    double degrees = 0;
+    table.read("rotation_axis", axis);
+    table.read("rotation_degrees", degrees);
+    if (!(length(axis) > 0)) table.fail("rotation_axis", "must not be zero");
+    const double half = degrees * std::numbers::pi / 360;
+    const Vector3 part = static_cast<float>(std::sin(half)) * normalized(axis);
+    return {part.x, part.y, part.z, static_cast<float>(std::cos(half))};
+  }
+
+  std::filesystem::path read_mesh(TomlTable &table) {
+    table.require("file");
+    std::string name;
+    table.read("file", name);
+    const std::filesystem::path file = scene_.path.parent_path() / name;
+    if (scene_.meshes.contains(file)) return file;
+    try {
+      scene_.meshes.emplace(file, read_obj(file));
+    } catch (const Error &error) {
+      table.fail("file", error.what());
+    }
+    return file;
+  }
+
+  Scene scene_;
+};
+
+} // namespace
+
+Scene read_scene(const std::filesystem::path &path) {
+  std::error_code problem;
+  if (!std::filesystem::exists(path, problem)) throw Error(fmt::format("{}: no such scene file", path.string()));
+  if (std::filesystem::is_directory(path, problem))
+    throw Error(fmt::format("{}: is a folder, not a scene file", path.string()));
+  toml::table document;
+  try {
+    document = toml::parse_file(path.string());
+  } catch (const toml::parse_error &error) {
+    const toml::source_position at = error.source().begin;
+    throw Error(fmt::format("{}:{}:{}: {}", path.string(), at.line, at.column, error.description()));
+  }
+  return Reader(path).read(document);
+}
+
+void scale_particle_count(Scene &scene, double factor) {
+  const double finer = std::cbrt(factor);
+  scene.world.kernel_radius = static_cast<float>(scene.world.kernel_radius / finer);
+  const double substeps = std::round(scene.world.substeps * finer);
+  scene.world.substeps = static_cast<std::uint32_t>(std::clamp(substeps, 1.0, 4e9));
+  for (SceneEmitter &emitter : scene.emitters) {
+    emitter.def.spacing = static_cast<float>(emitter.def.spacing / finer);
+    emitter.def.inset = static_cast<float>(emitter.def.inset / finer);
+  }
+}
+
+} // namespace runner

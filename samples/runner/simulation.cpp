@@ -1,0 +1,208 @@
+#include "simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "device_memory.h"
+#include "error.h"
+
+namespace runner {
+namespace {
+
+// `mesh` belongs to the scene, which outlives the call that it is given to.
+loam_mesh describe(const Mesh &mesh) {
+  loam_mesh result{};
+  result.positions = &mesh.vertices[0].x;
+  result.indices = mesh.indices.data();
+  result.vertex_count = static_cast<std::uint32_t>(mesh.vertices.size());
+  result.triangle_count = static_cast<std::uint32_t>(mesh.triangle_count());
+  return result;
+}
+static_assert(sizeof(Vector3) == 3 * sizeof(float), "vertices are handed over as plain floats");
+
+loam_region describe(const SceneRegion &region, const Scene &scene) {
+  loam_region result{};
+  result.kind = region.kind;
+  for (int axis = 0; axis < 3; ++axis) {
+    result.center[axis] = region.center[axis];
+    result.half_extents[axis] = region.half_extents[axis];
+  }
+  std::copy(region.rotation.begin(), region.rotation.end(), result.rotation);
+  result.radius = region.radius;
+  result.half_height = region.half_height;
+  if (region.kind == LOAM_REGION_MESH) result.mesh = describe(scene.meshes.at(region.file));
+  return result;
+}
+
+template <class T> std::vector<T> copy_to_host(const T *from, std::size_t count, std::uint32_t memory) {
+  std::vector<T> result(count);
+  if (count == 0) return result;
+  if (memory == LOAM_MEMORY_HOST)
+    std::memcpy(result.data(), from, count * sizeof(T));
+  else
+    copy_from_device(result.data(), from, count * sizeof(T));
+  return result;
+}
+
+} // namespace
+
+Simulation::Simulation(const Scene &scene) : scene_(&scene) {
+  // How many particles a region holds is known only when it has been filled; a world too small says so, and a world too large is
+  // made again to measure.
+  std::uint64_t capacity = 65536;
+  while (!build(capacity)) {
+    if (capacity >= std::uint64_t(1) << 28)
+      throw Error(fmt::format("{}: more particles than a world can hold", scene.path.string()));
+    capacity *= 4;
+  }
+  if (particle_count_ == 0) throw Error(fmt::format("{}: the emitters made no particles", scene.path.string()));
+  if (!build(particle_count_)) throw Error(fmt::format("{}: the emitters do not repeat themselves", scene.path.string()));
+}
+
+void Simulation::check(loam_status status, const Place &place) const {
+  if (status == LOAM_OK) return;
+  const std::string where = place.line == 0 ? std::string() : fmt::format(":{}", place.line);
+  const std::string what = place.key.empty() ? std::string() : fmt::format("{}: ", place.key);
+  throw Error(
+      fmt::format("{}{}: {}{} ({})", scene_->path.string(), where, what, loam_last_error(), loam_status_name(status)));
+}
+
+bool Simulation::build(std::uint64_t particle_capacity) {
+  world_.reset();
+  material_ids_.clear();
+  particle_count_ = 0;
+
+  loam_world_def world_def = scene_->world;
+  world_def.particle_capacity = particle_capacity;
+  loam_world *world = nullptr;
+  check(loam_world_create(&world_def, &world), scene_->world_place);
+  world_.reset(world);
+
+  std::vector<loam_material_id> materials;
+  for (const SceneMaterial &material : scene_->materials) {
+    loam_material_id id = 0;
+    check(loam_material_create(world, &material.def, &id), material.place);
+    materials.push_back(id);
+    material_ids_.push_back(static_cast<std::uint32_t>(id));
+  }
+
+  for (const SceneCollider &collider : scene_->colliders) {
+    loam_collider_def def{};
+    check(loam_collider_def_default(&def, sizeof def), collider.place);
+    def.kind = collider.kind;
+    for (int axis = 0; axis < 3; ++axis) def.position[axis] = collider.position[axis];
+    std::copy(collider.rotation.begin(), collider.rotation.end(), def.rotation);
+    def.friction = collider.friction;
+    if (collider.kind == LOAM_COLLIDER_MESH) def.mesh = describe(scene_->meshes.at(collider.file));
+    loam_collider_id id = 0;
+    check(loam_collider_create(world, &def, &id), collider.place);
+  }
+
+  for (const SceneEmitter &emitter : scene_->emitters) {
+    loam_fill_def def = emitter.def;
+    const auto material = std::find_if(scene_->materials.begin(), scene_->materials.end(),
+                                       [&](const SceneMaterial &candidate) { return candidate.name == emitter.material; });
+    def.material = materials[static_cast<std::size_t>(material - scene_->materials.begin())];
+    def.region = describe(emitter.region, *scene_);
+    def.cut = describe(emitter.cut, *scene_);
+    std::uint64_t count = 0;
+    const loam_status status = loam_particles_fill(world, &def, &count);
+    if (status == LOAM_ERROR_CAPACITY) return false;
+    check(status, emitter.place);
+    particle_count_ += count;
+  }
+  return true;
+}
+
+void Simulation::step() { check(loam_world_step(world_.get(), static_cast<float>(1.0 / scene_->frame_rate)), {}); }
+
+Particles Simulation::read_particles() const {
+  loam_particle_view view{};
+  view.struct_size = sizeof view;
+  check(loam_particles_map(world_.get(), &view), {});
+  struct Unmap {
+    loam_world *world;
+    ~Unmap() { loam_particles_unmap(world); }
+  } unmap{world_.get()};
+  const std::size_t count = view.count;
+  const std::vector<std::uint32_t> ids = copy_to_host(view.ids, count, view.memory);
+  const std::vector<std::uint32_t> materials = copy_to_host(view.materials, count, view.memory);
+  const std::vector<float> positions = copy_to_host(view.positions, 4 * count, view.memory);
+  const std::vector<float> velocities = copy_to_host(view.velocities, 4 * count, view.memory);
+
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return ids[a] < ids[b]; });
+  Particles result;
+  result.ids.reserve(count);
+  result.positions.reserve(count);
+  result.velocities.reserve(count);
+  result.materials.reserve(count);
+  for (const std::size_t i : order) {
+    result.ids.push_back(ids[i]);
+    result.positions.push_back({positions[4 * i], positions[4 * i + 1], positions[4 * i + 2]});
+    result.velocities.push_back({velocities[4 * i], velocities[4 * i + 1], velocities[4 * i + 2]});
+    const auto material = std::find(material_ids_.begin(), material_ids_.end(), materials[i]);
+    result.materials.push_back(static_cast<std::uint32_t>(material - material_ids_.begin()));
+  }
+  return result;
+}
+
+loam_statistics Simulation::statistics() const {
+  loam_statistics result{};
+  result.struct_size = sizeof result;
+  check(loam_world_get_statistics(world_.get(), &result), {});
+  return result;
+}
+
+std::vector<loam_stage> Simulation::stages() const {
+  std::uint32_t count = 0;
+  check(loam_world_get_stages(world_.get(), nullptr, 0, &count), {});
+  std::vector<loam_stage> result(count);
+  check(loam_world_get_stages(world_.get(), result.data(), count, &count), {});
+  return result;
+}
+
+std::vector<loam_memory> Simulation::memory() const {
+  std::uint32_t count = 0;
+  check(loam_world_get_memory(world_.get(), nullptr, 0, &count), {});
+  std::vector<loam_memory> result(count);
+  check(loam_world_get_memory(world_.get(), result.data(), count, &count), {});
+  return result;
+}
+
+std::uint64_t Simulation::state_hash() const {
+  std::uint64_t hash = 0;
+  check(loam_world_state_hash(world_.get(), &hash), {});
+  return hash;
+}
+
+std::string Simulation::backend() const {
+  std::uint32_t backend = 0;
+  check(loam_world_get_backend(world_.get(), &backend, nullptr), {});
+  return backend == LOAM_BACKEND_CUDA ? "cuda" : "cpu";
+}
+
+std::string Simulation::instruction_set() const {
+  std::uint32_t backend = 0, instruction_set = 0;
+  check(loam_world_get_backend(world_.get(), &backend, &instruction_set), {});
+  if (backend == LOAM_BACKEND_CUDA) return "";
+  switch (instruction_set) {
+  case LOAM_INSTRUCTION_SET_PORTABLE:
+    return "portable";
+  case LOAM_INSTRUCTION_SET_SSE4:
+    return "sse4";
+  case LOAM_INSTRUCTION_SET_AVX2:
+    return "avx2";
+  case LOAM_INSTRUCTION_SET_AVX512:
+    return "avx512";
+  default:
+    return "unknown";
+  }
+}
+
+} // namespace runner

@@ -1,0 +1,48 @@
+// A scene brought to life in a Loam world, through the public C interface only.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <loam/loam.h>
+
+#include "particles.h"
+#include "scene.h"
+
+namespace runner {
+
+class Simulation {
+public:
+  // Throws Error with the library's own text and the place in the scene file that it is about.
+  explicit Simulation(const Scene &scene);
+
+  // One frame of 1 / frame_rate seconds.
+  void step();
+
+  Particles read_particles() const;
+  loam_statistics statistics() const;
+  std::vector<loam_stage> stages() const;
+  std::vector<loam_memory> memory() const;
+  std::uint64_t state_hash() const;
+  std::string backend() const;         // "cpu" or "cuda"
+  std::string instruction_set() const; // "avx2" and so on; empty on CUDA
+  std::uint64_t particle_count() const { return particle_count_; }
+
+private:
+  struct Destroy {
+    void operator()(loam_world *world) const { loam_world_destroy(world); }
+  };
+
+  // Makes the world with room for so many particles and fills it. Returns false if that was too few.
+  bool build(std::uint64_t particle_capacity);
+  void check(loam_status status, const Place &place) const;
+
+  const Scene *scene_;
+  std::unique_ptr<loam_world, Destroy> world_;
+  std::vector<std::uint32_t> material_ids_; // the lower 32 bits, by index in the scene
+  std::uint64_t particle_count_ = 0;
+};
+
+} // namespace runner
