@@ -54,15 +54,18 @@ rm -f "$build/CMakeCache.txt"
 
 run=$build/samples/loam-run
 tests() { step "tests-$1" "$2" env LOAM_TEST_BACKEND="$1" ctest --test-dir "$build" --no-tests=error --output-on-failure -j "$(($(jobs) / 2))" --timeout 100; }
-hash_of() { grep -rhoE 'state_hash"?[^0-9a-fA-F]+(0x)?[0-9a-fA-F]+' "$@" | tail -n 1 | grep -oE '[0-9a-fA-F]+$'; }
+simulate() { "$run" "$scene" --no-pictures --ply-every 0 "${@:2}" --out "$out/runs/$1"; }
+hash_of() { sed -n 's/.*"state_hash": "\([0-9a-f]*\)".*/\1/p' "$out/runs/$1/stats.json"; }
 same_bits() {
-  local first second
-  "$run" "$scene" --backend cuda --frames 20 --out "$out/first" >"$logs/first.txt"
-  "$run" "$scene" --backend cuda --frames 20 --out "$out/second" >"$logs/second.txt"
-  first=$(hash_of "$logs/first.txt" "$out/first")
-  second=$(hash_of "$logs/second.txt" "$out/second")
-  echo "state_hash $first, then $second"
-  [[ -n $first && $first == "$second" ]]
+  simulate first --backend cuda --frames 60
+  simulate second --backend cuda --frames 60
+  echo "state_hash $(hash_of first), then $(hash_of second)"
+  [[ -n $(hash_of first) && $(hash_of first) == "$(hash_of second)" ]]
+}
+same_story() {
+  simulate cpu --backend cpu --frames 120
+  simulate cuda --backend cuda --frames 120
+  scripts/compare_runs.py "$out/runs/cpu" "$out/runs/cuda"
 }
 benchmarks() {
   local program found=1
@@ -73,7 +76,7 @@ benchmarks() {
   done
   return $found
 }
-export -f same_bits benchmarks hash_of
+export -f simulate hash_of same_bits same_story benchmarks
 export run scene out logs build
 
 step configure 90 cmake "${generator[@]}" -S . -B "$build" "${options[@]}"
@@ -82,9 +85,11 @@ tests cuda 100
 tests cpu 80
 step parity 60 ctest --test-dir "$build" --no-tests=error --output-on-failure --label-regex '^gpu$' --timeout 50
 step same-bits 60 bash -euo pipefail -c same_bits
+step same-story 60 bash -euo pipefail -c same_story
 if command -v compute-sanitizer >/dev/null; then
   for tool in memcheck initcheck racecheck; do
-    step "$tool" 45 compute-sanitizer --tool "$tool" --error-exitcode 9 "$run" "$scene" --backend cuda --frames 1 --out "$out/$tool"
+    step "$tool" 45 compute-sanitizer --tool "$tool" --error-exitcode 9 \
+      "$run" "$scene" --backend cuda --frames 1 --scale 0.02 --no-pictures --ply-every 0 --out "$out/runs/$tool"
   done
 else
   echo "compute-sanitizer is missing: not run"
