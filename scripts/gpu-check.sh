@@ -68,13 +68,10 @@ same_story() {
   scripts/compare_runs.py "$out/runs/cpu" "$out/runs/cuda"
 }
 benchmarks() {
-  local program found=1
-  for program in "$build"/benchmarks/loam-bench*; do
-    [[ -x $program && -f $program ]] || continue
-    found=0
-    "$program" --benchmark_out="$out/${program##*/}.json" --benchmark_out_format=json
-  done
-  return $found
+  local programs program
+  mapfile -t programs < <(find "$build/benchmarks" -maxdepth 1 -type f -executable -name 'loam*')
+  [[ ${#programs[@]} -gt 0 ]] || { echo "no benchmark was built"; return 1; }
+  for program in "${programs[@]}"; do "$program" --benchmark_out="$out/${program##*/}.json" --benchmark_out_format=json; done
 }
 export -f simulate hash_of same_bits same_story benchmarks
 export run scene out logs build
