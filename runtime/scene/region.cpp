@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scene/error.h"
+#include "scene/random.h"
 
 namespace loam {
 namespace {
@@ -100,7 +101,8 @@ void Region::take_mesh(const loam_mesh &source, const char *field) {
 double Region::winding_number(Vec3<double> own) const {
   if (mesh_ == nullptr) return depth(own) > 0 ? 1 : 0;
   if (!within(own, lower_, upper_)) return 0;
-  return orientation_ * mesh_->at(own);
+  const double quick = orientation_ * mesh_->at(own);
+  return std::fabs(quick - std::round(quick)) < 0.25 ? quick : orientation_ * mesh_->exactly_at(own);
 }
 
 bool Region::contains(Vec3<double> own, double inset) const {
@@ -231,7 +233,17 @@ double RegionSampler::lattice_volume(bool &overlaps_itself) const {
     }
     cubes.swap(finer);
   }
-  for (const double here : depths) volume += std::clamp(0.5 + here / side, 0.0, 1.0) * side * side * side;
+  // Where a mesh overlaps itself, the surface that lies inside bounds nothing: there a cube counts by one point in it, taken at random so
+  // that no row of cubes is counted wrong together.
+  Random random{1};
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    double share = std::clamp(0.5 + depths[i] / side, 0.0, 1.0);
+    if (overlaps_itself) {
+      const Vec3<double> offset = {random.between(-0.5, 0.5), random.between(-0.5, 0.5), random.between(-0.5, 0.5)};
+      share = contains(cubes[i] + side * offset) ? 1.0 : 0.0;
+    }
+    volume += share * side * side * side;
+  }
   return volume;
 }
 

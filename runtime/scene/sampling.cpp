@@ -6,23 +6,10 @@
 #include <unordered_map>
 
 #include "scene/error.h"
+#include "scene/random.h"
 
 namespace loam {
 namespace {
-
-// SplitMix64 (Steele, Lea, Flood 2014): a small generator whose bits do not depend on a library.
-struct Random {
-  std::uint64_t state;
-
-  std::uint64_t next() {
-    std::uint64_t z = state += 0x9E3779B97F4A7C15u;
-    z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ z >> 27) * 0x94D049BB133111EBu;
-    return z ^ z >> 31;
-  }
-  double uniform() { return double(next() >> 11) * 0x1p-53; } // in [0, 1)
-  double between(double low, double high) { return low + (high - low) * uniform(); }
-};
 
 // A block of 8 x 8 x 8 cells that the region reaches.
 constexpr int block_cells = 8;
@@ -95,8 +82,17 @@ public:
       : region_(region), spacing_(spacing), cell_(spacing * 0.577350), max_count_(max_count), random_{seed},
         origin_(region.lower()), blocks_(blocks_of(region, origin_, cell_, max_count)) {
     block_of_.reserve(blocks_.size());
-    for (std::size_t b = 0; b < blocks_.size(); ++b) block_of_.emplace(key_of(blocks_[b].x, blocks_[b].y, blocks_[b].z), b);
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      block_of_.emplace(key_of(blocks_[b].x, blocks_[b].y, blocks_[b].z), std::int32_t(b));
+    }
     cells_.assign(blocks_.size() * cells_in_block, -1);
+    around_.resize(blocks_.size() * 27);
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      for (int k = 0; k < 27; ++k) {
+        around_[27 * b + std::size_t(k)] =
+            block_at(blocks_[b].x + k % 3 - 1, blocks_[b].y + k / 3 % 3 - 1, blocks_[b].z + k / 9 - 1);
+      }
+    }
   }
 
   std::vector<Vec3<float>> sample() {
@@ -121,7 +117,7 @@ private:
                                      double(blocks_[b].y * block_cells + std::int64_t(c / block_cells % block_cells)),
                                      double(blocks_[b].z * block_cells + std::int64_t(c / block_cells / block_cells))};
         const Vec3<double> inside = {random_.uniform(), random_.uniform(), random_.uniform()};
-        if (try_point(origin_ + cell_ * (corner + inside))) grow();
+        if (try_point(origin_ + cell_ * (corner + inside), origin_, 0)) grow();
       }
     }
   }
@@ -129,9 +125,10 @@ private:
   void grow() {
     while (!active_.empty()) {
       const std::size_t pick = std::size_t(random_.uniform() * double(active_.size()));
-      const Vec3<double> centre = points_[active_[pick]];
+      const std::size_t from = active_[pick];
+      const Vec3<double> centre = points_[from];
       bool found = false;
-      for (int k = 0; k < candidates && !found; ++k) found = try_point(centre + in_shell());
+      for (int k = 0; k < candidates && !found; ++k) found = try_point(centre + in_shell(), centre, depths_[from]);
       if (found) continue;
       active_[pick] = active_.back();
       active_.pop_back();
@@ -152,42 +149,55 @@ private:
     return {std::int64_t(std::floor(p.x)), std::int64_t(std::floor(p.y)), std::int64_t(std::floor(p.z))};
   }
 
-  // The slot of a cell, or null outside the blocks. Neighbouring cells are mostly in the block that was asked for last.
-  std::int32_t *slot(std::int64_t x, std::int64_t y, std::int64_t z) {
-    const std::uint64_t key = key_of(x >> 3, y >> 3, z >> 3);
-    if (key != last_key_) {
-      const auto found = block_of_.find(key);
-      last_key_ = key;
-      last_block_ = found == block_of_.end() ? nullptr : &cells_[found->second * cells_in_block];
-    }
-    return last_block_ == nullptr ? nullptr : last_block_ + ((x & 7) + 8 * ((y & 7) + 8 * (z & 7)));
+  // The index of a block, or -1 where the region does not reach.
+  std::int32_t block_at(std::int64_t x, std::int64_t y, std::int64_t z) const {
+    const auto found = block_of_.find(key_of(x, y, z));
+    return found == block_of_.end() ? -1 : found->second;
   }
 
-  // Keeps the point if it is in the region and has room. All is asked of the rounded position that the particle will have.
-  bool try_point(Vec3<double> wanted) {
+  static std::size_t cell_in_block(std::int64_t x, std::int64_t y, std::int64_t z) {
+    return std::size_t((x & 7) + 8 * ((y & 7) + 8 * (z & 7)));
+  }
+
+  // Keeps the point if it is in the region and has room. All is asked of the rounded position that the particle will have. `free` is a
+  // distance that can be gone from the point `from`, in the region, without leaving the region.
+  bool try_point(Vec3<double> wanted, Vec3<double> from, double free) {
     const Vec3<float> world = region_.to_world(wanted);
     const Vec3<double> own = region_.to_own(world);
     const Cell at = cell_at(own);
-    std::int32_t *const place = slot(at.x, at.y, at.z);
-    if (place == nullptr || *place >= 0 || !has_room(own, at) || !region_.contains(own)) return false;
-    if (points_.size() >= max_count_)
-      refuse_capacity(std::max(double(max_count_) + 1, 0.57 * region_.volume() / (spacing_ * spacing_ * spacing_)),
-                      max_count_);
-    *place = std::int32_t(points_.size());
+    const std::int32_t block = block_at(at.x >> 3, at.y >> 3, at.z >> 3);
+    if (block < 0) return false;
+    std::int32_t &place = cells_[std::size_t(block) * cells_in_block + cell_in_block(at.x, at.y, at.z)];
+    if (place >= 0 || !has_room(own, at, std::size_t(block))) return false;
+    double depth = free - length(own - from);
+    if (!(depth > 0)) {
+      if (!region_.contains(own)) return false;
+      depth = region_.depth(own);
+    }
+    if (points_.size() >= max_count_) refuse_capacity(needed(), max_count_);
+    place = std::int32_t(points_.size());
     active_.push_back(std::uint32_t(points_.size()));
     points_.push_back(own);
+    depths_.push_back(depth);
     world_points_.push_back(world);
     return true;
   }
 
-  bool has_room(Vec3<double> own, const Cell &at) {
+  double needed() const {
+    return std::max(double(max_count_) + 1, 0.57 * region_.volume() / (spacing_ * spacing_ * spacing_));
+  }
+
+  bool has_room(Vec3<double> own, const Cell &at, std::size_t block) const {
     const double least = spacing_ * spacing_;
-    for (std::int64_t z = at.z - 2; z <= at.z + 2; ++z) {
-      for (std::int64_t y = at.y - 2; y <= at.y + 2; ++y) {
-        for (std::int64_t x = at.x - 2; x <= at.x + 2; ++x) {
-          const std::int32_t *const place = slot(x, y, z);
-          if (place == nullptr || *place < 0) continue;
-          const Vec3<double> apart = points_[std::size_t(*place)] - own;
+    for (std::int64_t z = (at.z & 7) - 2; z <= (at.z & 7) + 2; ++z) {
+      for (std::int64_t y = (at.y & 7) - 2; y <= (at.y & 7) + 2; ++y) {
+        for (std::int64_t x = (at.x & 7) - 2; x <= (at.x & 7) + 2; ++x) {
+          const std::int64_t side = ((x >> 3) + 1) + 3 * ((y >> 3) + 1) + 9 * ((z >> 3) + 1);
+          const std::int32_t neighbour = around_[27 * block + std::size_t(side)];
+          if (neighbour < 0) continue;
+          const std::int32_t place = cells_[std::size_t(neighbour) * cells_in_block + cell_in_block(x, y, z)];
+          if (place < 0) continue;
+          const Vec3<double> apart = points_[std::size_t(place)] - own;
           if (dot(apart, apart) < least) return false;
         }
       }
@@ -201,13 +211,13 @@ private:
   Random random_;
   Vec3<double> origin_;
   std::vector<Block> blocks_;
-  std::unordered_map<std::uint64_t, std::size_t> block_of_;
-  std::vector<std::int32_t> cells_; // the sample in each cell, or -1
+  std::unordered_map<std::uint64_t, std::int32_t> block_of_;
+  std::vector<std::int32_t> around_; // of each block the 27 around it, or -1
+  std::vector<std::int32_t> cells_;  // the sample in each cell, or -1
   std::vector<Vec3<double>> points_;
+  std::vector<double> depths_; // how far the boundary is at least
   std::vector<Vec3<float>> world_points_;
   std::vector<std::uint32_t> active_;
-  std::uint64_t last_key_ = ~std::uint64_t(0);
-  std::int32_t *last_block_ = nullptr;
 };
 
 void refuse_if_too_many(const RegionSampler &region, double density, double spacing, std::uint64_t max_count) {

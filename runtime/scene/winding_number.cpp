@@ -1,6 +1,7 @@
 // The sum over the triangles is taken over their hierarchy: a distant subtree is one dipole (Barill, Dickson, Schmidt, Levin,
-// Jacobson, "Fast winding numbers for soups and clouds", 2018, first order). With the far distance at four radii the error stays under
-// 1e-3 where the question is only whether the number is above a half.
+// Jacobson, "Fast winding numbers for soups and clouds", 2018, first order).
+// With the far distance at two radii the error was 0.05 on a torus, 0.12 on a flattened sphere. The number of a closed mesh is whole, so
+// this tells the inside; where it looks undecided, the exact sum is asked for.
 
 #include "scene/winding_number.h"
 
@@ -15,7 +16,7 @@ namespace loam {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double far_radii = 4.0;
+constexpr double far_radii = 2.0;
 
 Vec3<double> widened(Vec3<float> v) { return {v.x, v.y, v.z}; }
 

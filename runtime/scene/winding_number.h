@@ -14,7 +14,7 @@ class WindingNumber {
 public:
   explicit WindingNumber(const TriangleMesh &mesh);
 
-  // Within 1e-3 of the exact sum.
+  // Quickly; within about 0.1 of the exact sum.
   double at(Vec3<double> point) const;
 
   // The exact sum over all triangles, slowly.
