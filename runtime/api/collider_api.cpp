@@ -1,0 +1,64 @@
+#include "api/guard.h"
+
+using namespace loam;
+
+namespace {
+
+loam_collider_def default_collider() {
+  loam_collider_def def = {};
+  def.struct_size = sizeof def;
+  def.kind = LOAM_COLLIDER_PLANE;
+  def.rotation[3] = 1;
+  def.friction = 0.6f;
+  return def;
+}
+
+} // namespace
+
+loam_status loam_collider_def_default(loam_collider_def *def, size_t size) {
+  return guarded(nullptr, [&] { write_definition(def, "def", size, default_collider()); });
+}
+
+loam_status loam_collider_create(loam_world *world, const loam_collider_def *def, loam_collider_id *collider) {
+  return guarded(world, [&] {
+    check_pointer(world, "world");
+    check_pointer(collider, "collider");
+    *collider = world->create_collider(read_definition(def, "def", default_collider()));
+  });
+}
+
+loam_status loam_collider_destroy(loam_world *world, loam_collider_id collider) {
+  return guarded(world, [&] {
+    check_pointer(world, "world");
+    world->destroy_collider(collider);
+  });
+}
+
+namespace {
+
+loam_status pose(loam_world *world, loam_collider_id collider, const float position[3], const float rotation[4], bool at_once) {
+  return guarded(world, [&] {
+    check_pointer(world, "world");
+    check_pointer(position, "position");
+    check_pointer(rotation, "rotation");
+    world->pose_collider(collider, position, rotation, at_once);
+  });
+}
+
+} // namespace
+
+loam_status loam_collider_move(loam_world *world, loam_collider_id collider, const float position[3], const float rotation[4]) {
+  return pose(world, collider, position, rotation, false);
+}
+
+loam_status loam_collider_place(loam_world *world, loam_collider_id collider, const float position[3], const float rotation[4]) {
+  return pose(world, collider, position, rotation, true);
+}
+
+loam_status loam_collider_get_report(const loam_world *world, loam_collider_id collider, loam_collider_report *report) {
+  return guarded(world, [&] {
+    check_pointer(world, "world");
+    check_pointer(report, "report");
+    write_definition(report, "report", report->struct_size, world->collider_report(collider));
+  });
+}

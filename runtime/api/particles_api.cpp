@@ -1,0 +1,75 @@
+#include "api/guard.h"
+
+using namespace loam;
+
+namespace {
+
+loam_fill_def default_fill() {
+  loam_fill_def def = {};
+  def.struct_size = sizeof def;
+  def.sampling = LOAM_SAMPLING_POISSON_DISK;
+  def.jitter = 0.12f;
+  def.seed = 1;
+  return def;
+}
+
+loam_particles_def default_particles() {
+  loam_particles_def def = {};
+  def.struct_size = sizeof def;
+  return def;
+}
+
+} // namespace
+
+loam_status loam_fill_def_default(loam_fill_def *def, size_t size) {
+  return guarded(nullptr, [&] { write_definition(def, "def", size, default_fill()); });
+}
+
+loam_status loam_particles_fill(loam_world *world, const loam_fill_def *def, uint64_t *count) {
+  return guarded(world, [&] {
+    check_pointer(world, "world");
+    const uint64_t made = world->fill(read_definition(def, "def", default_fill()));
+    if (count != nullptr) *count = made;
+  });
+}
+
+loam_status loam_particles_def_default(loam_particles_def *def, size_t size) {
+  return guarded(nullptr, [&] { write_definition(def, "def", size, default_particles()); });
+}
+
+loam_status loam_particles_add(loam_world *world, const loam_particles_def *def, uint32_t *first_id) {
+  return guarded(world, [&] {
+    check_pointer(world, "world");
+    const uint32_t first = world->add(read_definition(def, "def", default_particles()));
+    if (first_id != nullptr) *first_id = first;
+  });
+}
+
+loam_status loam_particles_count(const loam_world *world, uint64_t *count) {
+  return guarded(world, [&] {
+    check_pointer(world, "world");
+    check_pointer(count, "count");
+    *count = world->backend().particle_count();
+  });
+}
+
+loam_status loam_particles_map(loam_world *world, loam_particle_view *view) {
+  return guarded(world, [&] {
+    check_pointer(world, "world");
+    check_pointer(view, "view");
+    loam_particle_view values = {};
+    const uint32_t size = view->struct_size;
+    // checked before mapping, so that a failure leaves nothing mapped
+    loam_particle_view probe = {};
+    write_definition(&probe, "view", size, values);
+    world->map(values);
+    write_definition(view, "view", size, values);
+  });
+}
+
+loam_status loam_particles_unmap(loam_world *world) {
+  return guarded(world, [&] {
+    check_pointer(world, "world");
+    world->unmap();
+  });
+}

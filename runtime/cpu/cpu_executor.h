@@ -1,0 +1,164 @@
+// The CPU executor: launches stages over items, particles and colours with threads x SIMD, in host memory.
+//
+// An executor is what the solver is written against; the CUDA one (cuda/cuda_executor.h) offers the same names.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+
+#include "cpu/kernel_table.h"
+#include "cpu/radix_sort.h"
+#include "cpu/visit_order.h"
+#include "cpu/workers.h"
+#include "scene/memory.h"
+#include "solver/cell_table.h"
+#include "solver/execution_settings.h"
+
+namespace loam {
+
+class CpuExecutor {
+public:
+  template <class T> using Array = HostArray<T>;
+  static constexpr std::uint32_t memory_kind = LOAM_MEMORY_HOST;
+
+  explicit CpuExecutor(const ExecutionSettings &settings)
+      : allocator_(settings.allocator), workers_(settings.thread_count, settings.job_system),
+        table_(kernel_table(settings.instruction_set)), sort_(allocator_), order_(allocator_, table_->width) {}
+
+  template <class T> Array<T> array() { return Array<T>(allocator_); }
+  void reserve(std::size_t particle_capacity, int material_count) {
+    sort_.reserve(particle_capacity);
+    order_.reserve(particle_capacity, material_count);
+  }
+  // Rows that the particle arrays need beyond the particles.
+  static std::size_t spare_rows(int material_count) {
+    return static_cast<std::size_t>(27 * material_count * VisitOrder::spare_rows_per_pass) + 16;
+  }
+
+  template <class Body> void session(Body &&body) { workers_.session(body); }
+
+  // ------------------------------------------------------------------------------------------------ per item ---
+
+  template <class Stage> void for_each(int count, const Stage &stage) {
+    in_chunks(count, 1024, [&](int first, int last) {
+      for (int i = first; i < last; ++i) stage(i);
+    });
+  }
+  // Chunks have a fixed size and are combined in order: the same bits for any number of threads.
+  template <class Reduction> typename Reduction::Value reduce(int count, const Reduction &reduction) {
+    using Value = typename Reduction::Value;
+    constexpr int chunk_size = 8192, most = 64;
+    Value total = Reduction::identity();
+    for (int base = 0; base < count; base += chunk_size * most) {
+      Value partial[most];
+      const int chunks = std::min(most, (count - base + chunk_size - 1) / chunk_size);
+      workers_.loop(chunks, [&](int c) {
+        Value value = Reduction::identity();
+        const int first = base + c * chunk_size, last = std::min(count, first + chunk_size);
+        for (int i = first; i < last; ++i) value = Reduction::combine(value, reduction(i));
+        partial[c] = value;
+      });
+      for (int c = 0; c < chunks; ++c) total = Reduction::combine(total, partial[c]);
+    }
+    return total;
+  }
+  void sort(std::uint32_t *keys, std::uint32_t *values, int count, int key_bits) {
+    sort_.sort(workers_, keys, values, count, key_bits);
+  }
+  template <class T> void set(T *values, int count, T value) { std::fill(values, values + count, value); }
+  template <class T> T read(const T *value) const { return *value; }
+  template <class T> void upload(T *to, const T *from, std::size_t count) { std::copy(from, from + count, to); }
+  template <class T> void copy(T *to, const T *from, std::size_t count) { std::copy(from, from + count, to); }
+  template <class T> void download(T *to, const T *from, std::size_t count) const { std::copy(from, from + count, to); }
+
+  // ---------------------------------------------------------------------------------------------- neighbours ---
+
+  void count_neighbours(const CellTable &table, const CountNeighbours &stage) { over_candidates(table, stage); }
+
+  // Orders the visits and makes room for the lists. Throws Error before anything of the lists has changed.
+  void arrange(const CellTable &table) {
+    order_.arrange(workers_, table);
+    order_.make_room();
+  }
+  void fill_neighbours(const CellTable &table, const FillNeighbours &stage) {
+    order_.fill_idle_lanes(workers_);
+    over_candidates(table, stage);
+  }
+  std::size_t list_bytes() const { return order_.list_bytes(); }
+  std::size_t record_bytes() const { return order_.record_bytes(); }
+  std::size_t order_bytes() const { return order_.order_bytes() + sort_.bytes(); }
+
+  // --------------------------------------------------------------------------------------- over neighbours ---
+
+  // All particles at once: the stage writes its own particle only.
+  template <class Stage> void for_each_particle(Row *velocities, const Stage &stage) {
+    over_batches(velocities, stage, 0, order_.batch_count());
+  }
+  template <class Stage> void for_each_particle_of(int material, Row *velocities, const Stage &stage) {
+    for (const VisitOrder::Pass &pass : order_.passes())
+      if (pass.material == material)
+        over_batches(velocities, stage, order_.group_begin(pass.first_group), order_.group_begin(pass.last_group));
+  }
+  // The passes in turn; within a pass, blocks at once and the particles of a block in turn.
+  int pass_count() const { return static_cast<int>(order_.passes().size()); }
+  int pass_material(int pass) const { return order_.passes()[static_cast<std::size_t>(pass)].material; }
+  std::int64_t pass_particles(int pass) const { return order_.passes()[static_cast<std::size_t>(pass)].particles; }
+  template <class Stage> void for_each_block(int pass_index, Row *velocities, const Stage &stage) {
+    const VisitOrder::Pass &pass = order_.passes()[static_cast<std::size_t>(pass_index)];
+    const CpuPairs pairs = order_.pairs(velocities);
+    const auto launch = table_->team[IndexOf<Stage, TeamStages>::value];
+    // Groups run from large to small, so the last chunks are the shortest and threads end together.
+    const int groups = pass.last_group - pass.first_group;
+    const int chunks = std::min(groups, 8 * static_cast<int>(workers_.thread_count()));
+    workers_.loop(chunks, [&](int c) {
+      const int first = pass.first_group + static_cast<int>(static_cast<std::int64_t>(groups) * c / chunks);
+      const int last = pass.first_group + static_cast<int>(static_cast<std::int64_t>(groups) * (c + 1) / chunks);
+      launch(&stage, pairs, order_.group_begin(first), order_.group_begin(last));
+    });
+  }
+
+  // ---------------------------------------------------------------------------------------------------- time ---
+
+  // Seconds since the previous call.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - lap_).count();
+    lap_ = now;
+    return seconds;
+  }
+
+private:
+  template <class F> void in_chunks(int count, int least, F &&function) {
+    const int per_chunk = std::max(least, count / (8 * static_cast<int>(workers_.thread_count())));
+    workers_.loop((count + per_chunk - 1) / per_chunk,
+                  [&](int c) { function(c * per_chunk, std::min(count, (c + 1) * per_chunk)); });
+  }
+  template <class Stage> void over_batches(Row *velocities, const Stage &stage, int first_batch, int last_batch) {
+    const CpuPairs pairs = order_.pairs(velocities);
+    const auto launch = table_->team[IndexOf<Stage, TeamStages>::value];
+    in_chunks(last_batch - first_batch, 16,
+              [&](int first, int last) { launch(&stage, pairs, first_batch + first, first_batch + last); });
+  }
+  template <class Stage> void over_candidates(const CellTable &table, const Stage &stage) {
+    const CpuCandidates views = {table.x,
+                                 table.y,
+                                 table.z,
+                                 table.keys,
+                                 table.starts,
+                                 {table.grid.size[0], table.grid.size[1], table.grid.size[2]},
+                                 order_.slots(),
+                                 order_.offsets(),
+                                 order_.indices()};
+    const auto launch = table_->candidate[IndexOf<Stage, CandidateStages>::value];
+    in_chunks(table.particle_count, 512, [&](int first, int last) { launch(&stage, views, first, last); });
+  }
+
+  HostAllocator allocator_;
+  Workers workers_;
+  const KernelTable *table_;
+  RadixSort sort_;
+  VisitOrder order_;
+  std::chrono::steady_clock::time_point lap_ = std::chrono::steady_clock::now();
+};
+
+} // namespace loam

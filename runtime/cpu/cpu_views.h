@@ -1,0 +1,43 @@
+// How neighbour lists and constraint records lie in memory on the CPU: in the order of the visits, a lane per block of cells.
+//
+// Particles are visited in batches of W, one of each of W blocks; batches of the same W blocks follow each other. For batch b and pair step t
+// (offsets[b] <= t < offsets[b + 1]):
+//
+//   index[t][W]         the neighbour of each lane; the particle itself where a lane's list has ended (with gradient 0)
+//   gradient[t][3][W]
+//   record[b][field][W]
+//
+// Blocks run from large to small, so the lanes in use of a batch are its first active[b]. The others repeat a particle of the same block, or a spare row
+// that belongs to no particle where there is no block: what they do is harmless, and nothing of it is kept.
+#pragma once
+
+#include <cstdint>
+
+#include "math/vector.h"
+
+namespace loam {
+
+struct CpuPairs {
+  Row *velocities;
+  const int *ids; // [batch][W]: the particle of each lane
+  const int *active;
+  const int *offsets;
+  const int *close_steps;
+  int *indices;
+  float *gradients;
+  float *records;
+};
+
+// What the candidate search reads and writes.
+struct CpuCandidates {
+  const float *x, *y, *z;
+  const std::uint32_t *keys; // cell of each particle
+  const int *starts;
+  int size[3];
+  // filling only
+  const int *slots; // batch * W + lane of each particle
+  const int *offsets;
+  int *indices;
+};
+
+} // namespace loam

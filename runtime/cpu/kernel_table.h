@@ -1,0 +1,25 @@
+// The launches of all stages for one instruction set, as plain function pointers.
+#pragma once
+
+#include "cpu/cpu_views.h"
+#include "solver/stages.h"
+
+namespace loam {
+
+struct KernelTable {
+  using TeamLaunch = void (*)(const void *stage, const CpuPairs &pairs, int first_batch, int last_batch);
+  using CandidateLaunch = void (*)(const void *stage, const CpuCandidates &candidates, int first, int last);
+  int width;
+  TeamLaunch team[Length<TeamStages>::value];
+  CandidateLaunch candidate[Length<CandidateStages>::value];
+};
+
+// Null where the instruction set is not part of this build or not of this machine. `instruction_set` is a LOAM_INSTRUCTION_SET_* other than
+// AUTO.
+const KernelTable *kernel_table(unsigned instruction_set);
+
+// The widest that this machine has.
+unsigned best_instruction_set();
+const char *instruction_set_name(unsigned instruction_set);
+
+} // namespace loam

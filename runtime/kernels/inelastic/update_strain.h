@@ -1,0 +1,63 @@
+// The end of a substep for the elastic strain: F^{n+1} = Z((I + h grad v) F^n), with the final velocity, and the true volume.
+//
+// The true volume J follows det(I + h grad v) alone: the elastic determinant forgets what the return mapping discards.
+#pragma once
+
+#include "kernels/inelastic/kinematics.h"
+#include "kernels/inelastic/record.h"
+#include "kernels/materials/law.h"
+#include "math/tensor_functions.h"
+
+namespace loam {
+
+template <class Law> struct UpdateStrain {
+  Law law;
+  StrainLimit limit;
+  float substep;
+  float *strains;
+  float *histories; // null if the law has none
+  float *log_volumes;
+  const int *neighbour_counts;
+  int *strain_limited; // counter
+
+  template <class Team> LOAM_FN void operator()(Team &team, typename Team::Item p) const {
+    using Real = typename Team::Real;
+    const Real zero(0.0f), one(1.0f), third(1.0f / 3.0f);
+    const Vec3<Real> s = team.vector(p, Record::gradient_sum);
+    const Mat3<Real> H = velocity_gradient_step(team, p, substep, team.velocity(p).xyz(), s);
+    Sym3<Real> S = advance_strain(team.symmetric(p, Record::strain), H);
+
+    // det(I + H) - 1 = tr H + second invariant + det H
+    const Real first = H.m[0][0] + (H.m[1][1] + H.m[2][2]);
+    const Real second = (H.m[0][0] * H.m[1][1] - H.m[0][1] * H.m[1][0]) +
+                        ((H.m[0][0] * H.m[2][2] - H.m[0][2] * H.m[2][0]) + (H.m[1][1] * H.m[2][2] - H.m[1][2] * H.m[2][1]));
+    const Real volume_step = log1p_bounded(first + (second + determinant(H)));
+    const Real log_volume =
+        team.own_value(p, log_volumes, 1, 0) + select(absolute(volume_step) < Real(10.0f), volume_step, zero); // not NaN
+    team.set_own_value(p, log_volumes, 1, 0, minimum(maximum(log_volume, Real(-20.0f)), Real(20.0f)));
+
+    auto limited = zero > zero;
+    const HenckyStrain<Real> strain = hencky_strain(S, limit, limited);
+    if (any(limited)) team.count(p, limited, strain_limited);
+    if constexpr (Law::plastic) {
+      const Real norm = square_root(frobenius_squared(strain.deviator));
+      const Mapped<Real> mapped = law.map(strain.trace, norm, team.field(p, Record::history));
+      // b - I = (1 + a)(I + E) - I = a I + E + a E with 1 + a = exp(2 tr/3) and I + E = exp(2 dev)
+      const Real a = expm1_series(Real(2.0f) * third * mapped.trace);
+      const Sym3<Real> E = expm1_traceless((Real(2.0f) * mapped.scale) * strain.deviator);
+      const Sym3<Real> projected = add_diagonal((one + a) * E, a);
+      const auto moved = either(mapped.scale < one, either(mapped.trace < strain.trace, mapped.trace > strain.trace));
+      S = select(either(moved, limited), projected, S);
+      // Granular matter with too few neighbours is loose: its neighbourhood cannot tell a strain.
+      const auto alone = team.own_count(p, neighbour_counts) < Real(3.0f);
+      S = select(alone, zero_symmetric<Real>(), S);
+      if constexpr (Law::has_history) team.set_own_value(p, histories, 1, 0, mapped.history);
+    }
+    // Should numbers ever run away, a particle forgets its strain instead of spreading NaN.
+    S = select(frobenius_squared(S) < Real(1e12f), S, zero_symmetric<Real>());
+    const Real values[6] = {S.xx, S.yy, S.zz, S.xy, S.xz, S.yz};
+    for (int i = 0; i < 6; ++i) team.set_own_value(p, strains, 6, i, values[i]);
+  }
+};
+
+} // namespace loam

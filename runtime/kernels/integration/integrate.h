@@ -1,0 +1,79 @@
+// The per-particle stages at both ends of a substep: forces at its start; the speed limit and the move at its end.
+#pragma once
+
+#include "math/atomics.h"
+#include "math/vector.h"
+
+namespace loam {
+
+// v <- v + h g
+struct ApplyForces {
+  Row *velocities;
+  Vec3<float> velocity_change;
+  LOAM_FN void operator()(int i) const {
+    Row v = velocities[i];
+    if (v.w == 0.0f) return; // pinned
+    v.x += velocity_change.x;
+    v.y += velocity_change.y;
+    v.z += velocity_change.z;
+    velocities[i] = v;
+  }
+};
+
+// Slows particles down to `greatest_speed`, r / h: beyond about that, matter would jump over its neighbours and over thin colliders. A velocity that
+// is not finite becomes 0.
+struct LimitSpeed {
+  Row *velocities;
+  float greatest_speed;
+  int *limited; // counter
+  LOAM_FN void operator()(int i) const {
+    Row v = velocities[i];
+    const float squared = v.x * v.x + (v.y * v.y + v.z * v.z);
+    if (squared <= greatest_speed * greatest_speed) return;
+    float scale = 0.0f;
+    if (is_finite(xyz(v))) {
+      // by the largest component first, so that squares do not overflow
+      const float largest = maximum(maximum(absolute(v.x), absolute(v.y)), absolute(v.z));
+      const Vec3<float> u = (1.0f / largest) * xyz(v);
+      scale = greatest_speed / (largest * length(u));
+      v.x *= scale;
+      v.y *= scale;
+      v.z *= scale;
+    } else {
+      v.x = v.y = v.z = 0.0f;
+    }
+    velocities[i] = v;
+    atomic_add(limited, 1);
+  }
+};
+
+// x <- x + h v, and the true volume from its logarithm, bounded to a factor of two either way where it weighs gradients.
+struct Advance {
+  Row *positions;
+  const Row *velocities;
+  const float *log_volumes;
+  const float *rest_volumes;
+  float substep;
+  LOAM_FN void operator()(int i) const {
+    Row x = positions[i];
+    const Row v = velocities[i];
+    const Vec3<float> moved = xyz(x) + substep * xyz(v);
+    if (is_finite(moved)) {
+      x.x = moved.x;
+      x.y = moved.y;
+      x.z = moved.z;
+    }
+    const float j = minimum(maximum(log_volumes[i], -0.7f), 0.7f);
+    x.w = rest_volumes[i] * volume_factor(j);
+    positions[i] = x;
+  }
+  // exp(j) for |j| <= 0.7, without a library call whose bits differ between machines
+  LOAM_FN static float volume_factor(float j) {
+    float sum = 1.0f / 40320;
+    const float inverse_factorial[8] = {1.0f / 5040, 1.0f / 720, 1.0f / 120, 1.0f / 24, 1.0f / 6, 0.5f, 1.0f, 1.0f};
+    for (int k = 0; k < 8; ++k) sum = sum * j + inverse_factorial[k];
+    return sum;
+  }
+};
+
+} // namespace loam

@@ -1,0 +1,94 @@
+// Position correction: particles keep a least distance, |x_p - x_b| >= d_min, at the end of the substep (section 4.4 of the XPBI paper).
+//
+// It acts on the velocity, inside the solve loop: shifting positions afterwards would let F lie about the shape. Each close pair is owned by one of its
+// ends and stands first in the owner's list. A visit takes the owner's pairs in turn, so it is sequential for a team of any kind.
+#pragma once
+
+#include "kernels/inelastic/record.h"
+#include "math/matrix.h"
+
+namespace loam {
+
+// Coincident particles have no direction to part in: they take one by turns.
+LOAM_FN Vec3<float> fallback_direction(int turn) {
+  const float a = 0.57735027f;
+  return {(turn & 1) != 0 ? a : -a, (turn & 2) != 0 ? a : -a, (turn & 4) != 0 ? a : -a};
+}
+
+struct CorrectPositions {
+  const Row *positions;
+  float substep;
+  float least_distance;
+  float share; // of the violation that one visit removes: 1 in turn, less for all at once
+  Vec3<float> up;
+
+  // One-sided: the pair's velocity change along its direction, and its moment.
+  template <class T> LOAM_FN Vec3<T> velocity_change(Vec3<T> d, T weight, T active, int turn, T &moment) const {
+    const T zero(0.0f), one(1.0f), h(substep), least(least_distance);
+    const T squared = dot(d, d);
+    const auto coincident = squared < T(1e-10f * least_distance * least_distance);
+    const Vec3<float> f = fallback_direction(turn);
+    const T distance = square_root(squared);
+    const T reciprocal = one / select(coincident, one, distance);
+    const Vec3<T> n = select(coincident, Vec3<T>{T(f.x), T(f.y), T(f.z)}, reciprocal * d);
+    const T violation = maximum(least - distance, zero) * active;
+    const auto movable = weight > zero;
+    const T change = select(movable, T(share) * violation / (h * select(movable, weight, one)), zero);
+    const T along = n.x * T(up.x) + (n.y * T(up.y) + n.z * T(up.z));
+    moment = moment + change * along * along * distance;
+    return change * n;
+  }
+};
+
+// Gauss-Seidel: colours as for the constraints.
+struct CorrectPositionsInTurn : CorrectPositions {
+  template <class Team> LOAM_FN void operator()(Team &team, typename Team::Item p) const {
+    using Real = typename Team::Real;
+    const Vec4<Real> own = team.velocity(p);
+    const Vec3<Real> x = team.own_row(p, positions).xyz();
+    Vec3<Real> v = own.xyz();
+    const Real close = team.field(p, Record::close_count), h(substep), zero(0.0f), one(1.0f);
+    Real moment = team.field(p, Record::pair_moment);
+    int turn = 0;
+    for (auto k : team.close_neighbours(p)) {
+      const Vec4<Real> other = team.neighbour_velocity(k);
+      const Vec3<Real> d = (x - team.neighbour_row(k, positions).xyz()) + h * (v - other.xyz());
+      const Real active = select(Real(static_cast<float>(turn)) < close, one, zero);
+      const Vec3<Real> j = velocity_change(d, own.w + other.w, active, turn, moment);
+      const Vec3<Real> u = other.xyz() - other.w * j;
+      team.set_neighbour_velocity(k, {u.x, u.y, u.z, other.w});
+      v = v + own.w * j;
+      ++turn;
+    }
+    team.set_velocity(p, {v.x, v.y, v.z, own.w});
+    team.set_field(p, Record::pair_moment, moment);
+  }
+};
+
+// Jacobi: every particle sums its own side of all its close pairs; the result goes to another array, so nobody reads what is being written.
+struct CorrectPositionsAtOnce : CorrectPositions {
+  Row *corrected;
+
+  template <class Team> LOAM_FN void operator()(Team &team, typename Team::Item p) const {
+    using Real = typename Team::Real;
+    const Vec4<Real> own = team.velocity(p);
+    const Vec3<Real> x = team.own_row(p, positions).xyz();
+    Vec3<Real> sum = {Real(0.0f), Real(0.0f), Real(0.0f)};
+    const Real close = team.field(p, Record::close_count), h(substep), zero(0.0f), one(1.0f);
+    Real moment = zero;
+    int turn = 0;
+    for (auto k : team.close_neighbours(p)) {
+      const Vec4<Real> other = team.neighbour_velocity(k);
+      const Vec3<Real> d = (x - team.neighbour_row(k, positions).xyz()) + h * (own.xyz() - other.xyz());
+      const Real active = select(Real(static_cast<float>(turn)) < close, one, zero);
+      sum = sum + velocity_change(d, own.w + other.w, active, turn, moment);
+      ++turn;
+    }
+    const Vec3<Real> v = own.xyz() + own.w * sum;
+    team.set_own_row(p, corrected, {v.x, v.y, v.z, own.w});
+    // each pair is seen from both its ends
+    team.set_field(p, Record::pair_moment, team.field(p, Record::pair_moment) + Real(0.5f) * moment);
+  }
+};
+
+} // namespace loam

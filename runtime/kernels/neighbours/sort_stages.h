@@ -1,0 +1,68 @@
+// The per-particle stages of the sort by cell: keys, the move of all particle data into the new order, and the table of cells.
+#pragma once
+
+#include <cstdint>
+
+#include "kernels/neighbours/cell_grid.h"
+
+namespace loam {
+
+// The arrays that make up the particles. `histories` is null where no law has one.
+struct ParticleArrays {
+  Row *positions;  // x, y, z, true volume
+  Row *velocities; // x, y, z, inverse mass
+  float *strains;  // 6 a particle
+  float *histories;
+  float *log_volumes;  // log of the true volume change
+  float *rest_volumes; // V0
+  std::uint32_t *ids;
+  std::uint32_t *materials;
+};
+
+struct AssignCells {
+  CellGrid grid;
+  const Row *positions;
+  std::uint32_t *keys;
+  std::uint32_t *order;
+  LOAM_FN void operator()(int i) const {
+    keys[i] = static_cast<std::uint32_t>(grid.index(xyz(positions[i])));
+    order[i] = static_cast<std::uint32_t>(i);
+  }
+};
+
+struct MoveParticles {
+  ParticleArrays from, to;
+  const std::uint32_t *order;
+  float *x, *y, *z; // coordinates once more, each by itself, for the candidate search
+  LOAM_FN void operator()(int i) const {
+    const std::uint32_t j = order[i];
+    const Row position = from.positions[j];
+    to.positions[i] = position;
+    x[i] = position.x;
+    y[i] = position.y;
+    z[i] = position.z;
+    to.velocities[i] = from.velocities[j];
+    for (int k = 0; k < 6; ++k) to.strains[6 * static_cast<long>(i) + k] = from.strains[6 * static_cast<long>(j) + k];
+    if (to.histories != nullptr) to.histories[i] = from.histories[j];
+    to.log_volumes[i] = from.log_volumes[j];
+    to.rest_volumes[i] = from.rest_volumes[j];
+    to.ids[i] = from.ids[j];
+    to.materials[i] = from.materials[j];
+  }
+};
+
+// starts[c] is the first particle whose cell is c or later. Particle i writes the entries between its predecessor's cell and its own.
+struct MarkCells {
+  const std::uint32_t *keys; // sorted
+  int *starts;               // cell_count + 1 entries
+  int particle_count, cell_count;
+  LOAM_FN void operator()(int i) const {
+    const int own = static_cast<int>(keys[i]);
+    const int before = i == 0 ? -1 : static_cast<int>(keys[i - 1]);
+    for (int c = before + 1; c <= own; ++c) starts[c] = i;
+    if (i == particle_count - 1)
+      for (int c = own + 1; c <= cell_count; ++c) starts[c] = particle_count;
+  }
+};
+
+} // namespace loam

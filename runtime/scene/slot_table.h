@@ -1,0 +1,82 @@
+// Objects named by ids of index, generation and world: a stale id is recognised, never taken for another object.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "scene/error.h"
+
+namespace loam {
+
+template <class T> class SlotTable {
+public:
+  SlotTable(const char *kind, std::uint16_t world_tag, std::size_t most) : kind_(kind), world_tag_(world_tag), most_(most) {}
+
+  // The id that the next add() will give. Throws Error CAPACITY if there is no room.
+  std::uint64_t next_id() const {
+    const std::size_t index = free_slot();
+    if (index == most_)
+      throw Error(LOAM_ERROR_CAPACITY, format("a world holds at most %zu %ss", most_, kind_));
+    const std::uint16_t generation = index < slots_.size() ? slots_[index].generation : 1;
+    return make_id(index, generation);
+  }
+  std::uint64_t add(T object) {
+    const std::uint64_t id = next_id();
+    const auto index = static_cast<std::size_t>(id & 0xffffffffu);
+    if (index == slots_.size()) slots_.push_back({T(), 1, false});
+    slots_[index].object = std::move(object);
+    slots_[index].in_use = true;
+    return id;
+  }
+  // Throws Error INVALID_HANDLE.
+  std::size_t index_of(std::uint64_t id, const char *argument) const {
+    const auto index = static_cast<std::size_t>(id & 0xffffffffu);
+    const auto generation = static_cast<std::uint16_t>(id >> 32), tag = static_cast<std::uint16_t>(id >> 48);
+    const char *why = nullptr;
+    if (id == 0)
+      why = "is the null id";
+    else if (tag != world_tag_)
+      why = "is not of this world";
+    else if (index >= slots_.size() || generation > slots_[index].generation)
+      why = "was never given out";
+    else if (!slots_[index].in_use || generation != slots_[index].generation)
+      why = "is stale: its object was destroyed";
+    if (why != nullptr)
+      throw Error(LOAM_ERROR_INVALID_HANDLE,
+                  format("%s 0x%016llx %s (a %s was expected)", argument, static_cast<unsigned long long>(id), why, kind_));
+    return index;
+  }
+  T &at(std::uint64_t id, const char *argument) { return slots_[index_of(id, argument)].object; }
+  const T &at(std::uint64_t id, const char *argument) const { return slots_[index_of(id, argument)].object; }
+  void remove(std::uint64_t id, const char *argument) {
+    Slot &slot = slots_[index_of(id, argument)];
+    slot.object = T();
+    slot.in_use = false;
+    if (++slot.generation == 0) slot.generation = 1;
+  }
+  std::size_t size() const { return slots_.size(); }
+  T *at_index(std::size_t index) { return slots_[index].in_use ? &slots_[index].object : nullptr; }
+
+private:
+  struct Slot {
+    T object;
+    std::uint16_t generation;
+    bool in_use;
+  };
+  std::size_t free_slot() const {
+    for (std::size_t i = 0; i < slots_.size(); ++i)
+      if (!slots_[i].in_use) return i;
+    return slots_.size();
+  }
+  std::uint64_t make_id(std::size_t index, std::uint16_t generation) const {
+    return (static_cast<std::uint64_t>(world_tag_) << 48) | (static_cast<std::uint64_t>(generation) << 32) | index;
+  }
+
+  const char *kind_;
+  std::uint16_t world_tag_;
+  std::size_t most_;
+  std::vector<Slot> slots_;
+};
+
+} // namespace loam

@@ -1,0 +1,293 @@
+#include "scene/world.h"
+
+#include <atomic>
+#include <cmath>
+
+#include "cpu/kernel_table.h"
+#include "scene/checks.h"
+#include "scene/material.h"
+#include "scene/sampling.h"
+
+namespace loam {
+
+namespace {
+
+// Tags the ids of a world, so that one world's id is recognised as foreign by another. Never 0.
+std::uint16_t next_tag() {
+  static std::atomic<std::uint32_t> counter{0};
+  return static_cast<std::uint16_t>(1 + counter.fetch_add(1, std::memory_order_relaxed) % 65535);
+}
+
+void check_hooks(const loam_world_def &def) {
+  if ((def.allocator.allocate == nullptr) != (def.allocator.release == nullptr))
+    throw Error(LOAM_ERROR_INVALID_ARGUMENT, "allocator has only one of allocate and release; give both or neither");
+  if ((def.job_system.enqueue == nullptr) != (def.job_system.finish == nullptr))
+    throw Error(LOAM_ERROR_INVALID_ARGUMENT, "job_system has only one of enqueue and finish; give both or neither");
+}
+
+Pose make_pose(const float position[3], const float rotation[4]) {
+  check_vector("position", position, 1e9);
+  double norm = 0;
+  for (int k = 0; k < 4; ++k) {
+    if (!(std::abs(static_cast<double>(rotation[k])) <= 1e6))
+      throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("rotation[%d] is %g; it must be finite", k, static_cast<double>(rotation[k])));
+    norm += static_cast<double>(rotation[k]) * static_cast<double>(rotation[k]);
+  }
+  norm = std::sqrt(norm);
+  if (!(norm > 1e-6)) throw Error(LOAM_ERROR_INVALID_ARGUMENT, "rotation is a quaternion of length 0");
+  Pose pose;
+  pose.position = {position[0], position[1], position[2]};
+  pose.rotation = {static_cast<float>(static_cast<double>(rotation[0]) / norm), static_cast<float>(static_cast<double>(rotation[1]) / norm),
+                   static_cast<float>(static_cast<double>(rotation[2]) / norm), static_cast<float>(static_cast<double>(rotation[3]) / norm)};
+  return pose;
+}
+
+} // namespace
+
+loam_world_def default_world() {
+  loam_world_def def = {};
+  def.struct_size = sizeof def;
+  def.backend = LOAM_BACKEND_AUTO;
+  def.gravity[1] = -9.81f;
+  def.kernel_radius = 0.01f;
+  def.substeps = 16;
+  def.iterations = 5;
+  def.solver = LOAM_SOLVER_GAUSS_SEIDEL;
+  def.plasticity = LOAM_PLASTICITY_IMPLICIT;
+  def.velocity_smoothing = 20;
+  def.minimum_distance = 0.75f;
+  def.gradient_cutoff = 0.2f;
+  def.particle_capacity = 65536;
+  return def;
+}
+
+void check_world_def(const loam_world_def &def) {
+  check_choice("backend", def.backend, LOAM_BACKEND_CUDA);
+  check_vector("gravity", def.gravity, 1e6);
+  check_range("kernel_radius", static_cast<double>(def.kernel_radius), static_cast<double>(1e-6f), 1e6);
+  check_range("substeps", def.substeps, 1, 10000);
+  check_range("iterations", def.iterations, 1, 1000);
+  check_choice("solver", def.solver, LOAM_SOLVER_JACOBI);
+  check_choice("plasticity", def.plasticity, LOAM_PLASTICITY_SEMI_IMPLICIT);
+  check_range("velocity_smoothing", static_cast<double>(def.velocity_smoothing), 0, 1e4);
+  check_range("minimum_distance", static_cast<double>(def.minimum_distance), 0, 1);
+  check_range("gradient_cutoff", static_cast<double>(def.gradient_cutoff), static_cast<double>(0.01f), 1);
+  check_range("thread_count", def.thread_count, 0, 256);
+  check_choice("instruction_set", def.instruction_set, LOAM_INSTRUCTION_SET_AVX512);
+  check_range("particle_capacity", static_cast<double>(def.particle_capacity), 1, 268435456);
+  check_hooks(def);
+}
+
+} // namespace loam
+
+using namespace loam;
+
+loam_world::loam_world(const loam_world_def &def)
+    : def_(def), tag_(next_tag()), materials_("material", tag_, 4096), colliders_("collider", tag_, 4096) {
+  execution_ = {def.allocator, def.job_system, def.thread_count, def.instruction_set};
+  if (execution_.instruction_set == LOAM_INSTRUCTION_SET_AUTO) execution_.instruction_set = best_instruction_set();
+  if (kernel_table(execution_.instruction_set) == nullptr)
+    throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("instruction_set is %s (%u), which this machine does not have",
+                                                    instruction_set_name(execution_.instruction_set), execution_.instruction_set));
+  const SolverSettings settings = {def.kernel_radius,
+                                   def.gradient_cutoff,
+                                   def.minimum_distance,
+                                   def.velocity_smoothing,
+                                   def.solver == LOAM_SOLVER_JACOBI,
+                                   def.plasticity == LOAM_PLASTICITY_SEMI_IMPLICIT,
+                                   def.particle_capacity,
+                                   def.pair_capacity};
+  if (def.backend == LOAM_BACKEND_CUDA || (def.backend == LOAM_BACKEND_AUTO && cuda_available())) {
+    backend_ = make_cuda_backend(settings, execution_);
+    backend_kind_ = LOAM_BACKEND_CUDA;
+  } else {
+    backend_ = make_cpu_backend(settings, execution_);
+  }
+  input_.substeps = def.substeps;
+  input_.iterations = def.iterations;
+  input_.gravity = {def.gravity[0], def.gravity[1], def.gravity[2]};
+}
+
+void loam_world::log(std::int32_t level, const char *text) const {
+  if (def_.log.message != nullptr) def_.log.message(def_.log.user, level, text);
+}
+
+void loam_world::check_unmapped() const {
+  if (mapped_) throw Error(LOAM_ERROR_IN_USE, "the particle buffers are mapped; call loam_particles_unmap first");
+}
+
+// ------------------------------------------------------------------------------------------------------ stepping ---
+
+void loam_world::step(float seconds) {
+  check_above("seconds", static_cast<double>(seconds), 0, 1);
+  check_unmapped();
+  if (!(seconds / static_cast<float>(input_.substeps) >= 1e-9f))
+    throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("seconds is %g; over %u substeps that is less than 1e-9 s a substep",
+                                                    static_cast<double>(seconds), input_.substeps));
+  input_.seconds = seconds;
+  input_.colliders.clear();
+  for (std::size_t i = 0; i < colliders_.size(); ++i)
+    if (const Collider *c = colliders_.at_index(i); c != nullptr)
+      input_.colliders.push_back({c->kind, c->friction, c->pose, c->target, c->mesh});
+  backend_->step(input_);
+  for (std::size_t i = 0; i < colliders_.size(); ++i)
+    if (Collider *c = colliders_.at_index(i); c != nullptr) c->pose = c->target;
+}
+
+void loam_world::set_gravity(const float gravity[3]) {
+  check_vector("gravity", gravity, 1e6);
+  input_.gravity = {gravity[0], gravity[1], gravity[2]};
+}
+
+void loam_world::set_accuracy(std::uint32_t substeps, std::uint32_t iterations) {
+  check_range("substeps", substeps, 1, 10000);
+  check_range("iterations", iterations, 1, 1000);
+  input_.substeps = substeps;
+  input_.iterations = iterations;
+}
+
+// ----------------------------------------------------------------------------------------------------- materials ---
+
+void loam_world::send_materials() {
+  std::vector<SolverMaterial> list;
+  for (std::size_t i = 0; i < materials_.size(); ++i) {
+    const Material *m = materials_.at_index(i);
+    if (m == nullptr)
+      list.push_back({Elastic{}, "", false});
+    else
+      list.push_back({m->law, m->def.name, m->particles > 0});
+  }
+  backend_->set_materials(list);
+}
+
+loam_material_id loam_world::create_material(const loam_material_def &def) {
+  check_material(def);
+  check_unmapped();
+  const loam_material_id id = materials_.add({def, make_law(def), 0});
+  try {
+    send_materials();
+  } catch (...) {
+    materials_.remove(id, "material");
+    throw;
+  }
+  return id;
+}
+
+void loam_world::destroy_material(loam_material_id id) {
+  const Material &m = materials_.at(id, "material");
+  if (m.particles > 0)
+    throw Error(LOAM_ERROR_IN_USE, format("material \"%s\" has %llu particles", m.def.name, static_cast<unsigned long long>(m.particles)));
+  materials_.remove(id, "material");
+  send_materials();
+}
+
+const loam_material_def &loam_world::material(loam_material_id id) const { return materials_.at(id, "material").def; }
+
+// ----------------------------------------------------------------------------------------------------- colliders ---
+
+loam_collider_id loam_world::create_collider(const loam_collider_def &def) {
+  check_choice("kind", def.kind, LOAM_COLLIDER_MESH);
+  check_range("friction", static_cast<double>(def.friction), 0, 100);
+  check_reserved("reserved", def.reserved);
+  Collider collider;
+  collider.kind = def.kind;
+  collider.friction = def.friction;
+  collider.pose = collider.target = make_pose(def.position, def.rotation);
+  collider.report.struct_size = sizeof collider.report;
+  (void)colliders_.next_id(); // room for one more
+  if (def.kind == LOAM_COLLIDER_MESH) {
+    const TriangleMesh mesh = make_triangle_mesh(def.mesh, "mesh");
+    collider.report = mesh.report;
+    collider.report.struct_size = sizeof collider.report;
+    collider.mesh = backend_->add_mesh(build_bounding_volume_hierarchy(mesh));
+  }
+  return colliders_.add(collider);
+}
+
+void loam_world::destroy_collider(loam_collider_id id) {
+  const int mesh = colliders_.at(id, "collider").mesh;
+  if (mesh >= 0) backend_->remove_mesh(mesh);
+  colliders_.remove(id, "collider");
+}
+
+void loam_world::pose_collider(loam_collider_id id, const float position[3], const float rotation[4], bool at_once) {
+  Collider &collider = colliders_.at(id, "collider");
+  collider.target = make_pose(position, rotation);
+  if (at_once) collider.pose = collider.target;
+}
+
+loam_collider_report loam_world::collider_report(loam_collider_id id) const { return colliders_.at(id, "collider").report; }
+
+// ----------------------------------------------------------------------------------------------------- particles ---
+
+void loam_world::add_particles(loam_material_id material, const char *argument, NewParticles particles, bool pinned) {
+  Material &m = materials_.at(material, argument);
+  const std::uint64_t have = backend_->particle_count(), want = have + particles.count;
+  if (want > def_.particle_capacity)
+    throw Error(LOAM_ERROR_CAPACITY, format("%llu particles would be needed; particle_capacity is %llu", static_cast<unsigned long long>(want),
+                                            static_cast<unsigned long long>(def_.particle_capacity)));
+  particles.material = static_cast<std::uint32_t>(material & 0xffffffffu);
+  particles.first_id = static_cast<std::uint32_t>(have);
+  particles.inverse_mass = pinned ? 0.0f : 1.0f / (m.def.density * particles.volume);
+  if (!pinned && !(particles.inverse_mass > 0.0f && particles.inverse_mass <= 1e30f))
+    throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("a particle of %g m^3 and %g kg/m^3 has a mass that single precision cannot hold",
+                                                    static_cast<double>(particles.volume), static_cast<double>(m.def.density)));
+  if (particles.count == 0) return;
+  backend_->add_particles(particles);
+  const bool first = m.particles == 0;
+  m.particles += particles.count;
+  if (first) send_materials();
+}
+
+std::uint64_t loam_world::fill(const loam_fill_def &def) {
+  check_unmapped();
+  (void)materials_.at(def.material, "material");
+  const FillResult result = loam::fill(def, def_.kernel_radius, def_.particle_capacity - backend_->particle_count());
+  NewParticles particles = {};
+  particles.volume = static_cast<float>(result.volume_per_particle);
+  particles.count = result.positions.size();
+  particles.positions = particles.count > 0 ? &result.positions[0].x : nullptr;
+  particles.velocity = {def.velocity[0], def.velocity[1], def.velocity[2]};
+  if (particles.count > 0) add_particles(def.material, "material", particles, false);
+  return particles.count;
+}
+
+std::uint32_t loam_world::add(const loam_particles_def &def) {
+  check_unmapped();
+  (void)materials_.at(def.material, "material");
+  check_reserved("reserved", def.reserved);
+  check_choice("pinned", def.pinned, 1);
+  const double r = static_cast<double>(def_.kernel_radius);
+  if (def.count > 0) check_pointer(def.positions, "positions");
+  if (def.volume != 0.0f) check_range("volume", static_cast<double>(def.volume), 1e-24, 1e18);
+  for (std::uint64_t i = 0; i < 3 * def.count; ++i) {
+    const auto part = static_cast<unsigned long long>(i / 3);
+    const char axis = "xyz"[i % 3];
+    if (!(std::abs(static_cast<double>(def.positions[i])) <= 1e6 * r))
+      throw Error(LOAM_ERROR_INVALID_ARGUMENT,
+                  format("positions[%llu].%c is %g; it must be finite and within 1e6 kernel radii (%g m) of the origin", part, axis,
+                         static_cast<double>(def.positions[i]), 1e6 * r));
+    if (def.velocities != nullptr && !(std::abs(static_cast<double>(def.velocities[i])) <= 1e9))
+      throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("velocities[%llu].%c is %g; it must be finite and at most 1e9", part, axis,
+                                                      static_cast<double>(def.velocities[i])));
+  }
+  NewParticles particles = {};
+  particles.volume = def.volume != 0.0f ? def.volume : static_cast<float>(r * r * r);
+  particles.count = def.count;
+  particles.positions = def.positions;
+  particles.velocities = def.velocities;
+  const auto first = static_cast<std::uint32_t>(backend_->particle_count());
+  add_particles(def.material, "material", particles, def.pinned == 1);
+  return first;
+}
+
+void loam_world::map(loam_particle_view &view) {
+  if (mapped_) throw Error(LOAM_ERROR_IN_USE, "the particle buffers are mapped already");
+  backend_->map(view);
+  mapped_ = true;
+}
+
+void loam_world::unmap() {
+  if (!mapped_) throw Error(LOAM_ERROR_INVALID_ARGUMENT, "the particle buffers are not mapped");
+  mapped_ = false;
+}

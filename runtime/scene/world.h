@@ -1,0 +1,74 @@
+// The world as the host described it: its definition, materials, colliders, and the backend that holds the particles.
+#pragma once
+
+#include <memory>
+
+#include <loam/loam.h>
+
+#include "scene/slot_table.h"
+#include "solver/backend.h"
+
+namespace loam {
+
+// Throws Error INVALID_ARGUMENT naming the field.
+void check_world_def(const loam_world_def &def);
+loam_world_def default_world();
+
+} // namespace loam
+
+// The opaque type of the public headers.
+struct loam_world {
+public:
+  explicit loam_world(const loam_world_def &def);
+
+  void log(std::int32_t level, const char *text) const;
+
+  void step(float seconds);
+  void set_gravity(const float gravity[3]);
+  void set_accuracy(std::uint32_t substeps, std::uint32_t iterations);
+  std::uint32_t backend_kind() const { return backend_kind_; }
+  std::uint32_t instruction_set() const { return execution_.instruction_set; }
+  loam::Backend &backend() { return *backend_; }
+  const loam::Backend &backend() const { return *backend_; }
+
+  loam_material_id create_material(const loam_material_def &def);
+  void destroy_material(loam_material_id id);
+  const loam_material_def &material(loam_material_id id) const;
+
+  loam_collider_id create_collider(const loam_collider_def &def);
+  void destroy_collider(loam_collider_id id);
+  void pose_collider(loam_collider_id id, const float position[3], const float rotation[4], bool at_once);
+  loam_collider_report collider_report(loam_collider_id id) const;
+
+  std::uint64_t fill(const loam_fill_def &def);
+  std::uint32_t add(const loam_particles_def &def);
+  void map(loam_particle_view &view);
+  void unmap();
+
+private:
+  struct Material {
+    loam_material_def def;
+    loam::LawVariant law;
+    std::uint64_t particles = 0;
+  };
+  struct Collider {
+    std::uint32_t kind = LOAM_COLLIDER_PLANE;
+    float friction = 0;
+    loam::Pose pose{}, target{};
+    int mesh = -1;
+    loam_collider_report report{};
+  };
+  void check_unmapped() const;
+  void send_materials();
+  void add_particles(loam_material_id material, const char *argument, loam::NewParticles particles, bool pinned);
+
+  loam_world_def def_;
+  loam::ExecutionSettings execution_{};
+  std::uint32_t backend_kind_ = LOAM_BACKEND_CPU;
+  std::uint16_t tag_;
+  loam::SlotTable<Material> materials_;
+  loam::SlotTable<Collider> colliders_;
+  std::unique_ptr<loam::Backend> backend_;
+  loam::StepInput input_{};
+  bool mapped_ = false;
+};

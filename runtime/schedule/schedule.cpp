@@ -1,0 +1,41 @@
+#include "schedule/schedule.h"
+
+#include <utility>
+
+namespace loam {
+
+int Schedule::add(std::string name) {
+  stages_.push_back({std::move(name)});
+  return static_cast<int>(stages_.size()) - 1;
+}
+
+void Schedule::compile(const SceneContents &contents) {
+  *this = Schedule();
+
+  sort = add("sort");
+  search = add("neighbour search");
+  order = add("visit order");
+  gradients = add("gradients");
+  forces = add("forces");
+  if (contents.colliders) find_contacts = add("find contacts");
+  for (const SceneContents::Material &material : contents.materials)
+    solve.push_back(material.in_use ? add("solve " + material.name) : -1);
+  if (contents.position_correction) position_correction = add("position correction");
+  if (contents.colliders) contacts = add("contacts");
+  if (contents.velocity_smoothing) velocity_smoothing = add("velocity smoothing");
+  speed_limit = add("speed limit");
+  if (contents.colliders) final_contacts = add("final contacts");
+  for (const SceneContents::Material &material : contents.materials)
+    strain.push_back(material.in_use ? add("strain " + material.name) : -1);
+  advance = add("advance");
+  statistics = add("statistics");
+}
+
+void Schedule::begin_step() {
+  for (Stage &stage : stages_) {
+    stage.seconds = 0;
+    stage.items = 0;
+  }
+}
+
+} // namespace loam

@@ -1,0 +1,58 @@
+// The schedule: which stages a scene calls for, in order, and what each of them cost.
+//
+// It is compiled from what the world contains and again only when that changes. A stage that is not in it does not run, holds no memory and costs
+// no branch inside a kernel.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace loam {
+
+struct MemoryUse {
+  std::string effect;
+  std::uint64_t bytes;
+};
+
+struct Stage {
+  std::string name;
+  double seconds = 0;
+  std::uint64_t items = 0;
+};
+
+// What a schedule is made from.
+struct SceneContents {
+  struct Material {
+    std::string name;
+    bool in_use;
+  };
+  std::vector<Material> materials;
+  bool position_correction = false;
+  bool velocity_smoothing = false;
+  bool colliders = false;
+};
+
+class Schedule {
+public:
+  // Stage numbers; -1 where the scene does not call for it. Per material where it is a list.
+  int sort = -1, search = -1, order = -1, gradients = -1, forces = -1, find_contacts = -1, position_correction = -1,
+      contacts = -1, velocity_smoothing = -1, speed_limit = -1, final_contacts = -1, advance = -1, statistics = -1;
+  std::vector<int> solve, strain;
+
+  void compile(const SceneContents &contents);
+
+  void begin_step();
+  void record(int stage, double seconds, std::uint64_t items) {
+    Stage &s = stages_[static_cast<std::size_t>(stage)];
+    s.seconds += seconds;
+    s.items += items;
+  }
+  const std::vector<Stage> &stages() const { return stages_; }
+
+private:
+  int add(std::string name);
+  std::vector<Stage> stages_;
+};
+
+} // namespace loam

@@ -1,0 +1,92 @@
+// The one virtual interface between the scene and the machine that runs it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <loam/loam.h>
+
+#include "kernels/contact/collider_view.h"
+#include "kernels/materials/laws.h"
+#include "scene/bounding_volume_hierarchy.h"
+#include "schedule/schedule.h"
+#include "solver/execution_settings.h"
+
+namespace loam {
+
+template <class List> struct VariantOf;
+template <class... Types> struct VariantOf<TypeList<Types...>> { using Type = std::variant<Types...>; };
+using LawVariant = VariantOf<Laws>::Type;
+
+// A material as the solver sees it. Its index is that of the particles' material numbers.
+struct SolverMaterial {
+  LawVariant law;
+  std::string name;
+  bool in_use; // there are particles of it
+};
+
+// What stays for the life of a world.
+struct SolverSettings {
+  float kernel_radius;
+  float gradient_cutoff;
+  float minimum_distance;   // share of r; 0: off
+  float velocity_smoothing; // 1/s; 0: off
+  bool jacobi;
+  bool semi_implicit;
+  std::uint64_t particle_capacity;
+  std::uint64_t pair_capacity; // 0: grows
+};
+
+// A collider during a step: it moves from `start` to `end`.
+struct ColliderState {
+  std::uint32_t kind;
+  float friction;
+  Pose start, end;
+  int mesh; // as add_mesh() answered; -1 for a plane
+};
+
+struct StepInput {
+  float seconds;
+  std::uint32_t substeps, iterations;
+  Vec3<float> gravity;
+  std::vector<ColliderState> colliders;
+};
+
+struct NewParticles {
+  std::uint32_t material;
+  std::uint32_t first_id;
+  float volume, inverse_mass;
+  const float *positions; // 3 each
+  const float *velocities; // 3 each, or null
+  Vec3<float> velocity; // where `velocities` is null
+  std::uint64_t count;
+};
+
+class Backend {
+public:
+  virtual ~Backend() = default;
+  virtual void set_materials(const std::vector<SolverMaterial> &materials) = 0;
+  virtual int add_mesh(const BoundingVolumeHierarchy &mesh) = 0;
+  virtual void remove_mesh(int mesh) = 0;
+  virtual void add_particles(const NewParticles &particles) = 0;
+  virtual std::uint64_t particle_count() const = 0;
+  // Throws Error; then the particles stand at the end of the last whole substep, and `statistics.substeps_done` says of which.
+  virtual void step(const StepInput &input) = 0;
+  virtual void map(loam_particle_view &view) = 0;
+  virtual std::uint64_t state_hash() = 0;
+  virtual const loam_statistics &statistics() const = 0;
+  virtual const Schedule &schedule() const = 0;
+  virtual std::vector<MemoryUse> memory() const = 0;
+};
+
+// `instruction_set` of the settings is one that this machine has.
+std::unique_ptr<Backend> make_cpu_backend(const SolverSettings &solver, const ExecutionSettings &execution);
+
+// Throws Error BACKEND_UNAVAILABLE where there is no device. Where the library was built without CUDA it always does.
+std::unique_ptr<Backend> make_cuda_backend(const SolverSettings &solver, const ExecutionSettings &execution);
+bool cuda_available();
+
+} // namespace loam

@@ -1,0 +1,299 @@
+// The solver's state and its housekeeping, over any executor. The algorithm itself is in substep.h.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "kernels/contact/find_contacts.h"
+#include "kernels/contact/solve_contacts.h"
+#include "kernels/contact/sweep_contacts.h"
+#include "kernels/integration/integrate.h"
+#include "kernels/integration/measures.h"
+#include "kernels/neighbours/sort_stages.h"
+#include "scene/error.h"
+#include "solver/backend.h"
+#include "solver/stages.h"
+
+namespace loam {
+
+template <class Executor> class Solver final : public Backend {
+public:
+  Solver(const SolverSettings &settings, const ExecutionSettings &execution);
+
+  void set_materials(const std::vector<SolverMaterial> &materials) override;
+  int add_mesh(const BoundingVolumeHierarchy &mesh) override;
+  void remove_mesh(int mesh) override;
+  void add_particles(const NewParticles &particles) override;
+  std::uint64_t particle_count() const override { return static_cast<std::uint64_t>(count_); }
+  void step(const StepInput &input) override;
+  void map(loam_particle_view &view) override;
+  std::uint64_t state_hash() override;
+  const loam_statistics &statistics() const override { return statistics_; }
+  const Schedule &schedule() const override { return schedule_; }
+  std::vector<MemoryUse> memory() const override;
+
+private:
+  template <class T> using Array = typename Executor::template Array<T>;
+
+  // One copy of all particle data; sorting moves it from one to the other.
+  struct ParticleStorage {
+    Array<Row> positions, velocities;
+    Array<float> strains, histories, log_volumes, rest_volumes;
+    Array<std::uint32_t> ids, materials;
+    ParticleArrays arrays() {
+      return {positions.data(),   velocities.data(),   strains.data(), histories.data(),
+              log_volumes.data(), rest_volumes.data(), ids.data(),     materials.data()};
+    }
+    std::uint64_t bytes() const {
+      return positions.bytes() + velocities.bytes() + strains.bytes() + histories.bytes() + log_volumes.bytes() +
+             rest_volumes.bytes() + ids.bytes() + materials.bytes();
+    }
+  };
+  struct Mesh {
+    Array<BvhNode> nodes;
+    Array<BvhTriangle> triangles;
+    Array<BvhFeatures> features;
+    Array<Vec3<float>> ring;
+    int triangle_count = 0;
+    bool in_use = false;
+  };
+
+  ParticleStorage make_storage() {
+    return {executor_.template array<Row>(),   executor_.template array<Row>(),
+            executor_.template array<float>(), executor_.template array<float>(),
+            executor_.template array<float>(), executor_.template array<float>(),
+            executor_.template array<std::uint32_t>(), executor_.template array<std::uint32_t>()};
+  }
+  void reserve_storage(ParticleStorage &storage, std::size_t rows);
+  void reserve_histories();
+  template <class T> void copy_in(Array<T> &array, const std::vector<T> &values) {
+    array.reserve(std::max<std::size_t>(values.size(), 1));
+    executor_.upload(array.data(), values.data(), values.size());
+  }
+
+  // The parts of a substep, in substep.h.
+  void substep(const StepInput &input, std::uint32_t index);
+  void search_neighbours();
+  void compile_schedule(bool colliders);
+  void make_grid();
+  void prepare_contacts(const StepInput &input, std::uint32_t index);
+  void iterate(std::uint32_t iterations);
+  void solve_in_turn();
+  void solve_at_once();
+  void correct_positions();
+  void measure(const Vec3<float> &gravity);
+  void finish_statistics(const StepInput &input);
+  template <class F> void with_law(int material, F &&f) {
+    std::visit([&](const auto &law) { f(law, limit_of(law)); }, materials_[static_cast<std::size_t>(material)].law);
+  }
+  template <class Law> static StrainLimit limit_of(const Law &) { return strain_limit(Law::greatest_strain); }
+  void lap(int stage, std::uint64_t items) { schedule_.record(stage, executor_.lap(), items); }
+  std::uint64_t particles() const { return static_cast<std::uint64_t>(count_); }
+
+  SolverSettings settings_;
+  Executor executor_;
+  SmoothingKernel kernel_;
+  Schedule schedule_;
+  bool schedule_is_current_ = false, schedule_has_colliders_ = false;
+  std::vector<SolverMaterial> materials_;
+  int material_capacity_ = 0;
+  int count_ = 0;
+  std::size_t spare_row_ = 0; // index of the first
+  bool histories_in_use_ = false;
+
+  ParticleStorage now_, other_;
+  Array<std::uint32_t> keys_, order_;
+  Array<float> x_, y_, z_;
+  Array<int> cell_starts_, neighbour_counts_, close_counts_;
+  Array<int> counters_; // speed limited, strain limited, contacts
+  Array<float> corrections_, densities_;
+  Array<Row> jacobi_rows_[3];
+  std::vector<Mesh> meshes_;
+  std::vector<ColliderView> views_; // of this substep
+  Array<ColliderView> collider_views_;
+  Array<Contact> contacts_;
+  int contact_count_ = 0;
+
+  CellTable table_{};
+  float h_ = 0;
+  Vec3<float> up_{0, 1, 0};
+  std::uint64_t pairs_ = 0;
+  double residual_ = 0, virial_moment_ = 0;
+  std::uint64_t speed_limited_ = 0;
+  loam_statistics statistics_{};
+};
+
+template <class Executor>
+Solver<Executor>::Solver(const SolverSettings &settings, const ExecutionSettings &execution)
+    : settings_(settings), executor_(execution), kernel_(SmoothingKernel::make(static_cast<double>(settings.kernel_radius))),
+      now_(make_storage()), other_(make_storage()), keys_(executor_.template array<std::uint32_t>()),
+      order_(executor_.template array<std::uint32_t>()), x_(executor_.template array<float>()),
+      y_(executor_.template array<float>()), z_(executor_.template array<float>()),
+      cell_starts_(executor_.template array<int>()), neighbour_counts_(executor_.template array<int>()),
+      close_counts_(executor_.template array<int>()), counters_(executor_.template array<int>()),
+      corrections_(executor_.template array<float>()), densities_(executor_.template array<float>()),
+      jacobi_rows_{executor_.template array<Row>(), executor_.template array<Row>(), executor_.template array<Row>()},
+      collider_views_(executor_.template array<ColliderView>()), contacts_(executor_.template array<Contact>()) {
+  const auto capacity = static_cast<std::size_t>(settings_.particle_capacity);
+  spare_row_ = capacity;
+  keys_.reserve(capacity);
+  order_.reserve(capacity);
+  // A candidate pack may read a few elements past the last particle.
+  x_.reserve(capacity + 16);
+  y_.reserve(capacity + 16);
+  z_.reserve(capacity + 16);
+  counters_.reserve(4);
+  statistics_.struct_size = sizeof(loam_statistics);
+  set_materials({});
+}
+
+template <class Executor> void Solver<Executor>::reserve_storage(ParticleStorage &storage, std::size_t rows) {
+  // Growing keeps the particles: only the spare rows at the end become more.
+  const auto grow = [&](auto &array, std::size_t per_row) {
+    if (array.capacity() >= rows * per_row) return;
+    std::remove_reference_t<decltype(array)> fresh = executor_.template array<std::remove_pointer_t<decltype(array.data())>>();
+    fresh.reserve(rows * per_row);
+    if (array.capacity() > 0) executor_.copy(fresh.data(), array.data(), array.capacity());
+    array.swap(fresh);
+  };
+  grow(storage.positions, 1);
+  grow(storage.velocities, 1);
+  grow(storage.strains, 6);
+  grow(storage.log_volumes, 1);
+  grow(storage.rest_volumes, 1);
+  grow(storage.ids, 1);
+  grow(storage.materials, 1);
+  if (histories_in_use_) grow(storage.histories, 1);
+}
+
+template <class Executor> void Solver<Executor>::set_materials(const std::vector<SolverMaterial> &materials) {
+  const int wanted = std::max(1, static_cast<int>(materials.size()));
+  if (wanted > material_capacity_) {
+    // Spare rows and passes are per material: room for a few more at a time.
+    const int capacity = std::max(wanted, std::min(2 * material_capacity_, 4096));
+    const std::size_t rows = spare_row_ + Executor::spare_rows(capacity);
+    executor_.reserve(static_cast<std::size_t>(settings_.particle_capacity), capacity);
+    reserve_storage(now_, rows);
+    reserve_storage(other_, rows);
+    neighbour_counts_.reserve(rows);
+    close_counts_.reserve(rows);
+    if (settings_.jacobi) {
+      corrections_.reserve(rows * 6);
+      for (Array<Row> &column : jacobi_rows_) column.reserve(rows);
+    }
+    // Spare rows take part in arithmetic: a rest volume of 0 would be a division by 0.
+    const int spare = static_cast<int>(rows - spare_row_);
+    executor_.set(now_.rest_volumes.data() + spare_row_, spare, 1.0f);
+    executor_.set(other_.rest_volumes.data() + spare_row_, spare, 1.0f);
+    material_capacity_ = capacity;
+  }
+  bool history = histories_in_use_;
+  for (const SolverMaterial &material : materials)
+    std::visit([&](const auto &law) { history = history || std::remove_cvref_t<decltype(law)>::has_history; }, material.law);
+  if (history && !histories_in_use_) {
+    histories_in_use_ = true;
+    const std::size_t rows = spare_row_ + Executor::spare_rows(material_capacity_);
+    reserve_storage(now_, rows);
+    reserve_storage(other_, rows);
+  }
+  materials_ = materials;
+  schedule_is_current_ = false;
+}
+
+template <class Executor> int Solver<Executor>::add_mesh(const BoundingVolumeHierarchy &mesh) {
+  Mesh stored = {executor_.template array<BvhNode>(), executor_.template array<BvhTriangle>(),
+                 executor_.template array<BvhFeatures>(), executor_.template array<Vec3<float>>(),
+                 static_cast<int>(mesh.triangles.size()), true};
+  copy_in(stored.nodes, mesh.nodes);
+  copy_in(stored.triangles, mesh.triangles);
+  copy_in(stored.features, mesh.features);
+  copy_in(stored.ring, mesh.ring);
+  for (std::size_t i = 0; i < meshes_.size(); ++i)
+    if (!meshes_[i].in_use) {
+      meshes_[i] = std::move(stored);
+      return static_cast<int>(i);
+    }
+  meshes_.push_back(std::move(stored));
+  return static_cast<int>(meshes_.size()) - 1;
+}
+
+template <class Executor> void Solver<Executor>::remove_mesh(int mesh) {
+  Mesh &stored = meshes_[static_cast<std::size_t>(mesh)];
+  stored.nodes.free();
+  stored.triangles.free();
+  stored.features.free();
+  stored.ring.free();
+  stored.in_use = false;
+}
+
+template <class Executor> void Solver<Executor>::add_particles(const NewParticles &particles) {
+  const auto n = static_cast<std::size_t>(particles.count), at = static_cast<std::size_t>(count_);
+  if (n == 0) return;
+  std::vector<Row> positions(n), velocities(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const float *x = particles.positions + 3 * i;
+    positions[i] = {x[0], x[1], x[2], particles.volume};
+    const float *v = particles.velocities != nullptr ? particles.velocities + 3 * i : &particles.velocity.x;
+    velocities[i] = {v[0], v[1], v[2], particles.inverse_mass};
+  }
+  std::vector<std::uint32_t> ids(n);
+  for (std::size_t i = 0; i < n; ++i) ids[i] = particles.first_id + static_cast<std::uint32_t>(i);
+  const int count = static_cast<int>(n);
+  executor_.upload(now_.positions.data() + at, positions.data(), n);
+  executor_.upload(now_.velocities.data() + at, velocities.data(), n);
+  executor_.upload(now_.ids.data() + at, ids.data(), n);
+  executor_.set(now_.materials.data() + at, count, particles.material);
+  executor_.set(now_.rest_volumes.data() + at, count, particles.volume);
+  executor_.set(now_.log_volumes.data() + at, count, 0.0f);
+  executor_.set(now_.strains.data() + 6 * at, 6 * count, 0.0f);
+  if (histories_in_use_) executor_.set(now_.histories.data() + at, count, 0.0f);
+  count_ += count;
+}
+
+template <class Executor> void Solver<Executor>::map(loam_particle_view &view) {
+  densities_.reserve(static_cast<std::size_t>(settings_.particle_capacity));
+  executor_.session([&] {
+    executor_.for_each(count_, ComputeDensities{now_.positions.data(), now_.velocities.data(), densities_.data()});
+  });
+  view.memory = Executor::memory_kind;
+  view.count = particles();
+  view.ids = now_.ids.data();
+  view.positions = &now_.positions.data()->x;
+  view.velocities = &now_.velocities.data()->x;
+  view.materials = now_.materials.data();
+  view.strains = now_.strains.data();
+  view.densities = densities_.data();
+}
+
+template <class Executor> std::uint64_t Solver<Executor>::state_hash() {
+  std::uint64_t hash = 0;
+  executor_.session([&] { hash = executor_.reduce(count_, StateHash{now_.arrays()}); });
+  return StateHash::mix(hash, particles());
+}
+
+template <class Executor> std::vector<MemoryUse> Solver<Executor>::memory() const {
+  std::vector<MemoryUse> uses;
+  uses.push_back({"particles", now_.bytes() + other_.bytes()});
+  uses.push_back({"sorting and visit order", keys_.bytes() + order_.bytes() + x_.bytes() + y_.bytes() + z_.bytes() +
+                                                 cell_starts_.bytes() + neighbour_counts_.bytes() + close_counts_.bytes() +
+                                                 counters_.bytes() + executor_.order_bytes()});
+  uses.push_back({"neighbour pairs", executor_.list_bytes()});
+  uses.push_back({"inelastic constraints", executor_.record_bytes()});
+  if (settings_.jacobi) {
+    std::uint64_t bytes = corrections_.bytes();
+    for (const Array<Row> &column : jacobi_rows_) bytes += column.bytes();
+    uses.push_back({"Jacobi solver", bytes});
+  }
+  std::uint64_t colliders = collider_views_.bytes() + contacts_.bytes();
+  for (const Mesh &mesh : meshes_)
+    colliders += mesh.nodes.bytes() + mesh.triangles.bytes() + mesh.features.bytes() + mesh.ring.bytes();
+  if (colliders > 0) uses.push_back({"colliders", colliders});
+  if (densities_.bytes() > 0) uses.push_back({"mapped densities", densities_.bytes()});
+  return uses;
+}
+
+} // namespace loam
+
+#include "solver/step.h"
+#include "solver/substep.h"

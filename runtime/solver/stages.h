@@ -1,0 +1,42 @@
+// The list of all stages over neighbours, made from the list of laws. Executors instantiate their launches from it.
+#pragma once
+
+#include "kernels/inelastic/measure_constraint.h"
+#include "kernels/inelastic/scalar_multiplier.h"
+#include "kernels/inelastic/solve_inelastic.h"
+#include "kernels/inelastic/solve_jacobi.h"
+#include "kernels/inelastic/update_strain.h"
+#include "kernels/integration/position_correction.h"
+#include "kernels/integration/velocity_smoothing.h"
+#include "kernels/materials/laws.h"
+#include "kernels/neighbours/compute_gradients.h"
+#include "kernels/neighbours/search_neighbours.h"
+
+namespace loam {
+
+template <class... Lists> struct Concatenate;
+template <class... A> struct Concatenate<TypeList<A...>> { using Type = TypeList<A...>; };
+template <class... A, class... B, class... Rest> struct Concatenate<TypeList<A...>, TypeList<B...>, Rest...> {
+  using Type = typename Concatenate<TypeList<A..., B...>, Rest...>::Type;
+};
+
+template <class Law> using StagesOfLaw = TypeList<SolveInelastic<Law, ScalarMultiplier>, JacobiImpulse<Law, ScalarMultiplier>,
+                                                  UpdateStrain<Law>, MeasureConstraint<Law, ScalarMultiplier>>;
+
+template <class List> struct StagesOfLaws;
+template <class... L> struct StagesOfLaws<TypeList<L...>> { using Type = typename Concatenate<StagesOfLaw<L>...>::Type; };
+
+using TeamStages =
+    Concatenate<TypeList<ComputeGradients, CorrectPositionsInTurn, CorrectPositionsAtOnce, SmoothVelocities, JacobiApply>,
+                StagesOfLaws<Laws>::Type>::Type;
+using CandidateStages = TypeList<CountNeighbours, FillNeighbours>;
+
+template <class Stage, class List> struct IndexOf;
+template <class Stage, class... Rest> struct IndexOf<Stage, TypeList<Stage, Rest...>> { static constexpr int value = 0; };
+template <class Stage, class First, class... Rest> struct IndexOf<Stage, TypeList<First, Rest...>> {
+  static constexpr int value = 1 + IndexOf<Stage, TypeList<Rest...>>::value;
+};
+template <class List> struct Length;
+template <class... Types> struct Length<TypeList<Types...>> { static constexpr int value = sizeof...(Types); };
+
+} // namespace loam

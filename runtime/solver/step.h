@@ -1,0 +1,244 @@
+// What stands around the substeps: neighbours, contacts' preparation, statistics. Part of solver.h.
+#pragma once
+
+namespace loam {
+
+template <class Executor> void Solver<Executor>::step(const StepInput &input) {
+  compile_schedule(!input.colliders.empty());
+  schedule_.begin_step();
+
+  const float g = length(input.gravity);
+  up_ = g > 0.0f ? (-1.0f / g) * input.gravity : Vec3<float>{0, 1, 0};
+  statistics_.substeps_done = 0;
+  statistics_.pair_visits = 0;
+  statistics_.step_seconds = 0;
+  residual_ = 0;
+  virial_moment_ = 0;
+  contact_count_ = 0;
+  pairs_ = 0;
+  executor_.set(counters_.data(), 4, 0);
+  const auto begin = std::chrono::steady_clock::now();
+  executor_.lap();
+  executor_.session([&] {
+    if (count_ > 0)
+      for (std::uint32_t i = 0; i < input.substeps; ++i) {
+        substep(input, i);
+        ++statistics_.substeps_done;
+        statistics_.pairs = pairs_;
+        statistics_.pair_visits += pairs_ * input.iterations;
+      }
+    finish_statistics(input);
+  });
+  statistics_.step_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+template <class Executor> void Solver<Executor>::compile_schedule(bool colliders) {
+  if (schedule_is_current_ && colliders == schedule_has_colliders_) return;
+  SceneContents contents;
+  for (const SolverMaterial &material : materials_) contents.materials.push_back({material.name, material.in_use});
+  contents.position_correction = settings_.minimum_distance > 0.0f;
+  contents.velocity_smoothing = settings_.velocity_smoothing > 0.0f;
+  contents.colliders = colliders;
+  schedule_.compile(contents);
+  schedule_is_current_ = true;
+  schedule_has_colliders_ = colliders;
+}
+
+template <class Executor> void Solver<Executor>::make_grid() {
+  const float cell = 2.0f * settings_.kernel_radius;
+  // A cell is a hair wider than the support, so that rounding in the cell coordinate cannot hide a neighbour two cells away.
+  const float inverse_cell = 1.0f / (cell * 1.0001f);
+  const CellBounds::Value bounds = executor_.reduce(count_, CellBounds{now_.positions.data(), inverse_cell});
+  const Colouring colouring = Colouring::choose(count_);
+  const int period = colouring.period();
+  table_ = {};
+  table_.colouring = colouring;
+  table_.grid.inverse_cell = inverse_cell;
+
+  std::int64_t size[3];
+  for (int k = 0; k < 3; ++k) {
+    table_.grid.origin[k] = bounds.lower[k];
+    const std::int64_t extent = static_cast<std::int64_t>(bounds.upper[k]) - bounds.lower[k] + 1;
+    size[k] = (extent + period - 1) / period * period;
+  }
+  // The table of cells is bounded by the particles; wider scenes wrap around.
+  const std::int64_t most = std::max<std::int64_t>(32768, 4 * static_cast<std::int64_t>(settings_.particle_capacity));
+  while (size[0] * size[1] > most || size[0] * size[1] * size[2] > most) {
+    std::int64_t *widest = std::max_element(size, size + 3);
+    *widest = std::max<std::int64_t>(period, (*widest / 2 + period - 1) / period * period);
+  }
+  for (int k = 0; k < 3; ++k) table_.grid.size[k] = static_cast<int>(size[k]);
+  const auto cells = static_cast<std::size_t>(table_.grid.cell_count()) + 1;
+  if (cells > cell_starts_.capacity()) cell_starts_.reserve(cells + cells / 4);
+}
+
+template <class Executor> void Solver<Executor>::search_neighbours() {
+  Executor &ex = executor_;
+  make_grid();
+  const int cells = table_.grid.cell_count();
+  int key_bits = 1;
+  while (((cells - 1) >> key_bits) != 0) ++key_bits;
+  ex.for_each(count_, AssignCells{table_.grid, now_.positions.data(), keys_.data(), order_.data()});
+  ex.sort(keys_.data(), order_.data(), count_, key_bits);
+  ex.for_each(count_, MoveParticles{now_.arrays(), other_.arrays(), order_.data(), x_.data(), y_.data(), z_.data()});
+  std::swap(now_, other_);
+  ex.for_each(count_, MarkCells{keys_.data(), cell_starts_.data(), count_, cells});
+  lap(schedule_.sort, particles());
+
+  const float r = settings_.kernel_radius, least = settings_.minimum_distance * r;
+  // Pairs that can come too close within the substep; a pair's approach is a fraction of r in any motion that is resolved.
+  const float close = schedule_.position_correction >= 0 ? least + 0.5f * r : 0.0f;
+  const CandidateTest test = {4.0f * r * r, close * close, settings_.jacobi};
+  table_.particle_count = count_;
+  table_.material_count = std::max(1, static_cast<int>(materials_.size()));
+  table_.keys = keys_.data();
+  table_.starts = cell_starts_.data();
+  table_.x = x_.data();
+  table_.y = y_.data();
+  table_.z = z_.data();
+  table_.materials = now_.materials.data();
+  table_.neighbour_counts = neighbour_counts_.data();
+  table_.close_counts = close_counts_.data();
+  table_.spare_rows = static_cast<int>(spare_row_);
+  ex.count_neighbours(table_, CountNeighbours{test, neighbour_counts_.data(), close_counts_.data()});
+  const auto pairs = static_cast<std::uint64_t>(ex.reduce(count_, SumCounts{neighbour_counts_.data()}));
+  statistics_.pairs_peak = std::max(statistics_.pairs_peak, pairs);
+  if (settings_.pair_capacity != 0 && pairs > settings_.pair_capacity)
+    throw Error(LOAM_ERROR_CAPACITY, format("the particles have %llu neighbour pairs; pair_capacity is %llu and would have to be that many",
+                                            static_cast<unsigned long long>(pairs),
+                                            static_cast<unsigned long long>(settings_.pair_capacity)));
+  if (pairs > 1500000000ull)
+    throw Error(LOAM_ERROR_CAPACITY, format("the particles have %llu neighbour pairs, more than the 1500000000 that a world can hold: are many "
+                                            "of them in one place, or is kernel_radius too large?",
+                                            static_cast<unsigned long long>(pairs)));
+  pairs_ = pairs;
+  lap(schedule_.search, particles());
+  ex.arrange(table_);
+  lap(schedule_.order, particles());
+  ex.fill_neighbours(table_, FillNeighbours{test, neighbour_counts_.data(), close_counts_.data()});
+  lap(schedule_.search, pairs_);
+
+  ex.for_each_particle(now_.velocities.data(),
+                       ComputeGradients{now_.positions.data(), now_.velocities.data(), now_.strains.data(),
+                                        histories_in_use_ ? now_.histories.data() : nullptr, now_.rest_volumes.data(),
+                                        neighbour_counts_.data(), close_counts_.data(),
+                                        settings_.jacobi ? corrections_.data() : nullptr, kernel_, settings_.gradient_cutoff});
+  lap(schedule_.gradients, pairs_);
+}
+
+// The pose at a share of the way, by spherical interpolation: constant velocity and spin.
+inline Pose interpolate(const Pose &a, const Pose &b, double t) {
+  if (t <= 0) return a;
+  if (t >= 1) return b;
+  Pose pose;
+  pose.position = {static_cast<float>(a.position.x + t * (static_cast<double>(b.position.x) - a.position.x)),
+                   static_cast<float>(a.position.y + t * (static_cast<double>(b.position.y) - a.position.y)),
+                   static_cast<float>(a.position.z + t * (static_cast<double>(b.position.z) - a.position.z))};
+  const double p[4] = {a.rotation.x, a.rotation.y, a.rotation.z, a.rotation.w};
+  double q[4] = {b.rotation.x, b.rotation.y, b.rotation.z, b.rotation.w};
+  double cosine = p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3];
+  if (cosine < 0) { // the shorter way round
+    for (double &c : q) c = -c;
+    cosine = -cosine;
+  }
+  double from = 1 - t, to = t;
+  if (cosine < 0.9999) {
+    const double angle = std::acos(cosine), sine = std::sin(angle);
+    from = std::sin((1 - t) * angle) / sine;
+    to = std::sin(t * angle) / sine;
+  }
+  double r[4], norm = 0;
+  for (int k = 0; k < 4; ++k) {
+    r[k] = from * p[k] + to * q[k];
+    norm += r[k] * r[k];
+  }
+  norm = std::sqrt(norm);
+  pose.rotation = {static_cast<float>(r[0] / norm), static_cast<float>(r[1] / norm), static_cast<float>(r[2] / norm),
+                   static_cast<float>(r[3] / norm)};
+  return pose;
+}
+
+template <class Executor> void Solver<Executor>::prepare_contacts(const StepInput &input, std::uint32_t index) {
+  contact_count_ = 0;
+  if (input.colliders.empty()) return;
+  views_.clear();
+  for (const ColliderState &collider : input.colliders) {
+    ColliderView view = {};
+    view.kind = collider.kind;
+    view.friction = collider.friction;
+    view.start = interpolate(collider.start, collider.end, static_cast<double>(index) / input.substeps);
+    view.end = interpolate(collider.start, collider.end, static_cast<double>(index + 1) / input.substeps);
+    if (collider.mesh >= 0) {
+      Mesh &mesh = meshes_[static_cast<std::size_t>(collider.mesh)];
+      view.nodes = mesh.nodes.data();
+      view.triangles = mesh.triangles.data();
+      view.features = mesh.features.data();
+      view.ring = mesh.ring.data();
+      view.triangle_count = mesh.triangle_count;
+    }
+    views_.push_back(view);
+  }
+  copy_in(collider_views_, views_);
+
+  const float r = settings_.kernel_radius;
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    executor_.set(counters_.data() + 2, 1, 0);
+    executor_.for_each(count_, FindContacts{now_.positions.data(), now_.velocities.data(), collider_views_.data(),
+                                            static_cast<int>(views_.size()), h_, 0.5f * r, r, contacts_.data(),
+                                            static_cast<int>(contacts_.capacity()), counters_.data() + 2});
+    contact_count_ = executor_.read(counters_.data() + 2);
+    if (static_cast<std::size_t>(contact_count_) <= contacts_.capacity()) break;
+    const auto found = static_cast<std::size_t>(contact_count_);
+    contacts_.reserve(std::min(found + found / 4 + 256, static_cast<std::size_t>(settings_.particle_capacity)));
+  }
+  lap(schedule_.find_contacts, particles());
+}
+
+// Residual and virial, on the velocities of the last iteration. The terms go where the other copy of the strains is: 4 of its 6 floats.
+template <class Executor> void Solver<Executor>::measure(const Vec3<float> &gravity) {
+  static_assert(ConstraintTerms::term_count <= 6);
+  float *terms = other_.strains.data();
+  executor_.set(terms, ConstraintTerms::term_count * count_, 0.0f);
+  for (int m = 0; m < static_cast<int>(materials_.size()); ++m) {
+    if (schedule_.solve[static_cast<std::size_t>(m)] < 0) continue;
+    with_law(m, [&](const auto &law, StrainLimit limit) {
+      using Law = std::remove_cvref_t<decltype(law)>;
+      executor_.for_each_particle_of(m, now_.velocities.data(),
+                                     MeasureConstraint<Law, ScalarMultiplier>{law, limit, h_, up_, terms});
+    });
+  }
+  const SumTerms::Value sums = executor_.reduce(count_, SumTerms{terms});
+  const double squared = sums.term[ConstraintTerms::value_squared];
+  residual_ = squared > 0 ? std::sqrt(sums.term[ConstraintTerms::residual_squared] / squared) : 0;
+
+  double support = 0;
+  if (contact_count_ > 0)
+    support = executor_.reduce(contact_count_, ContactMoment{contacts_.data(), now_.positions.data(), now_.velocities.data(), up_}) /
+              static_cast<double>(h_);
+  const MotionMeasure::Value motion = executor_.reduce(
+      count_, MotionMeasure{now_.positions.data(), now_.velocities.data(), now_.strains.data(), gravity});
+  const double weight = motion.weight_moment - support;
+  const double stress = sums.term[ConstraintTerms::pair_moment] - sums.term[ConstraintTerms::stress_moment];
+  virial_moment_ = length(gravity) > 0.0f && contact_count_ > 0 && std::abs(weight) > 0 ? stress / weight : 0;
+  lap(schedule_.statistics, particles());
+}
+
+template <class Executor> void Solver<Executor>::finish_statistics(const StepInput &input) {
+  const MotionMeasure::Value motion = executor_.reduce(
+      count_, MotionMeasure{now_.positions.data(), now_.velocities.data(), now_.strains.data(), input.gravity});
+  statistics_.particles = particles();
+  statistics_.contacts =
+      contact_count_ > 0 ? static_cast<std::uint64_t>(executor_.reduce(contact_count_, SumPlanes{contacts_.data()})) : 0;
+  statistics_.non_finite = static_cast<std::uint64_t>(motion.non_finite);
+  statistics_.kinetic_energy = motion.kinetic_energy;
+  statistics_.max_speed = motion.max_speed;
+  statistics_.mean_speed = count_ > 0 ? motion.speed_sum / count_ : 0;
+  for (int k = 0; k < 3; ++k) statistics_.momentum[k] = motion.momentum[k];
+  statistics_.speed_limited = static_cast<std::uint64_t>(executor_.read(counters_.data()));
+  statistics_.strain_limited = static_cast<std::uint64_t>(executor_.read(counters_.data() + 1));
+  statistics_.residual = residual_;
+  statistics_.virial = virial_moment_;
+  lap(schedule_.statistics, particles());
+}
+
+} // namespace loam

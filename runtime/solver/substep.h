@@ -1,0 +1,128 @@
+// One substep, as algorithm 1 of the XPBI paper has it. Part of solver.h.
+#pragma once
+
+namespace loam {
+
+template <class Executor> void Solver<Executor>::substep(const StepInput &input, std::uint32_t index) {
+  Executor &ex = executor_;
+  h_ = input.seconds / static_cast<float>(input.substeps);
+  const bool last = index + 1 == input.substeps;
+
+  search_neighbours(); // sort by cell; lists, corrected gradients and constraint records on x^n
+  ex.for_each(count_, ApplyForces{now_.velocities.data(), h_ * input.gravity});
+  lap(schedule_.forces, particles());
+  prepare_contacts(input, index);
+
+  iterate(input.iterations);
+  if (last) measure(input.gravity);
+
+  if (schedule_.velocity_smoothing >= 0) {
+    // A share of 1 would be a step to the neighbours' mean; more overshoots.
+    const float coefficient = std::min(1.0f, settings_.velocity_smoothing * h_);
+    Row *smoothed = other_.velocities.data();
+    ex.for_each_particle(now_.velocities.data(), SmoothVelocities{now_.positions.data(), smoothed, kernel_, coefficient});
+    now_.velocities.swap(other_.velocities);
+    lap(schedule_.velocity_smoothing, particles());
+  }
+  ex.for_each(count_, LimitSpeed{now_.velocities.data(), settings_.kernel_radius / h_, counters_.data()});
+  lap(schedule_.speed_limit, particles());
+  if (contact_count_ > 0) {
+    ex.for_each(contact_count_, SolveContacts{contacts_.data(), now_.velocities.data(), h_});
+    const float margin = 0.02f * 0.5f * settings_.kernel_radius;
+    const int colliders = static_cast<int>(input.colliders.size());
+    ex.for_each(contact_count_, SweepContacts{contacts_.data(), now_.positions.data(), now_.velocities.data(),
+                                              collider_views_.data(), colliders, h_, margin});
+    lap(schedule_.final_contacts, static_cast<std::uint64_t>(contact_count_));
+  }
+
+  // Strain and position with the same velocity.
+  for (int m = 0; m < static_cast<int>(materials_.size()); ++m) {
+    const int stage = schedule_.strain[static_cast<std::size_t>(m)];
+    if (stage < 0) continue;
+    with_law(m, [&](const auto &law, StrainLimit limit) {
+      using Law = std::remove_cvref_t<decltype(law)>;
+      ex.for_each_particle_of(m, now_.velocities.data(),
+                              UpdateStrain<Law>{law, limit, h_, now_.strains.data(), now_.histories.data(),
+                                                now_.log_volumes.data(), neighbour_counts_.data(), counters_.data() + 1});
+    });
+    lap(stage, particles());
+  }
+  ex.for_each(count_, Advance{now_.positions.data(), now_.velocities.data(), now_.log_volumes.data(),
+                              now_.rest_volumes.data(), h_});
+  lap(schedule_.advance, particles());
+}
+
+// The nonlinear iterations: inelastic constraints, position correction, contacts.
+template <class Executor> void Solver<Executor>::iterate(std::uint32_t iterations) {
+  for (std::uint32_t i = 0; i < iterations; ++i) {
+    if (settings_.jacobi) {
+      solve_at_once();
+    } else {
+      solve_in_turn();
+    }
+    if (schedule_.position_correction >= 0) correct_positions();
+    if (contact_count_ > 0) {
+      executor_.for_each(contact_count_, SolveContacts{contacts_.data(), now_.velocities.data(), h_});
+      lap(schedule_.contacts, static_cast<std::uint64_t>(contact_count_));
+    }
+  }
+}
+
+// For semi-implicit plasticity, matter is elastic inside the loop.
+template <class F> void with_plasticity(bool semi_implicit, const auto &law, StrainLimit limit, F &&f) {
+  if (semi_implicit)
+    f(Elastic{law.lame}, limit);
+  else
+    f(law, limit);
+}
+
+template <class Executor> void Solver<Executor>::solve_in_turn() {
+  for (int pass = 0; pass < executor_.pass_count(); ++pass) {
+    const int m = executor_.pass_material(pass);
+    with_law(m, [&](const auto &law_of_material, StrainLimit limit_of_material) {
+      with_plasticity(settings_.semi_implicit, law_of_material, limit_of_material, [&](const auto &law, StrainLimit limit) {
+        using Law = std::remove_cvref_t<decltype(law)>;
+        executor_.for_each_block(pass, now_.velocities.data(), SolveInelastic<Law, ScalarMultiplier>{law, limit, h_});
+      });
+    });
+    lap(schedule_.solve[static_cast<std::size_t>(m)], static_cast<std::uint64_t>(executor_.pass_particles(pass)));
+  }
+}
+
+template <class Executor> void Solver<Executor>::solve_at_once() {
+  const JacobiRows rows = {{jacobi_rows_[0].data(), jacobi_rows_[1].data(), jacobi_rows_[2].data()}};
+  Row *velocities = now_.velocities.data();
+  int stage = schedule_.gradients;
+  for (int m = 0; m < static_cast<int>(materials_.size()); ++m) {
+    if (schedule_.solve[static_cast<std::size_t>(m)] < 0) continue;
+    stage = schedule_.solve[static_cast<std::size_t>(m)];
+    with_law(m, [&](const auto &law_of_material, StrainLimit limit_of_material) {
+      with_plasticity(settings_.semi_implicit, law_of_material, limit_of_material, [&](const auto &law, StrainLimit limit) {
+        using Law = std::remove_cvref_t<decltype(law)>;
+        executor_.for_each_particle_of(
+            m, velocities, JacobiImpulse<Law, ScalarMultiplier>{law, limit, h_, corrections_.data(), rows});
+      });
+    });
+    lap(stage, particles());
+  }
+  // Every particle writes its own velocity and reads none but its own: the impulses are in the rows.
+  executor_.for_each_particle(velocities, JacobiApply{rows, now_.positions.data(), kernel_});
+  lap(stage, particles());
+}
+
+template <class Executor> void Solver<Executor>::correct_positions() {
+  const float least = settings_.minimum_distance * settings_.kernel_radius;
+  Row *velocities = now_.velocities.data();
+  if (settings_.jacobi) {
+    // A particle touches about six others; a third of each pair's violation at a time does not overshoot.
+    const CorrectPositions common = {now_.positions.data(), h_, least, 1.0f / 3.0f, up_};
+    executor_.for_each_particle(velocities, CorrectPositionsAtOnce{common, other_.velocities.data()});
+    now_.velocities.swap(other_.velocities);
+  } else {
+    const CorrectPositionsInTurn stage{{now_.positions.data(), h_, least, 1.0f, up_}};
+    for (int pass = 0; pass < executor_.pass_count(); ++pass) executor_.for_each_block(pass, velocities, stage);
+  }
+  lap(schedule_.position_correction, particles());
+}
+
+} // namespace loam
