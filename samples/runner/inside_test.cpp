@@ -9,7 +9,7 @@ namespace runner {
 namespace {
 
 constexpr std::uint32_t leaf_triangles = 8;
-constexpr int cells_along_longest_axis = 96;
+constexpr int cells_along_longest_axis = 160;
 
 std::uint64_t edge_key(std::uint32_t from, std::uint32_t to) { return std::uint64_t(from) << 32 | to; }
 

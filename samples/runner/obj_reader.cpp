@@ -1,7 +1,9 @@
 #include "obj_reader.h"
 
 #include <cerrno>
+#include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <sstream>
@@ -29,19 +31,45 @@ std::string read_text(const std::filesystem::path &path) {
   return text.str();
 }
 
-// The lines (from 1) on which the file's vertices and faces stand, in their order: tinyobjloader does not keep them.
+// The lines (from 1) on which the file's vertices and faces stand, in their order: tinyobjloader does not keep them. It also reads
+// coordinates that are no numbers, NaN among them, as zero without a word; hence the check here.
 struct Lines {
   std::vector<std::size_t> vertices, faces;
-  explicit Lines(const std::string &text) {
+
+  Lines(const std::string &name, const std::string &text) {
     std::istringstream stream(text);
     std::string line;
     for (std::size_t number = 1; std::getline(stream, line); ++number) {
-      const std::size_t start = line.find_first_not_of(" \t");
-      if (start == std::string::npos || start + 1 >= line.size()) continue;
-      if (line[start + 1] != ' ' && line[start + 1] != '\t') continue;
-      if (line[start] == 'v') vertices.push_back(number);
-      if (line[start] == 'f') faces.push_back(number);
+      std::istringstream words(line);
+      std::string word;
+      words >> word;
+      if (word == "v") {
+        vertices.push_back(number);
+        for (const char axis : {'x', 'y', 'z'}) {
+          word.clear();
+          words >> word;
+          check_coordinate(fmt::format("{}:{}: vertex {}: {}", name, number, vertices.size(), axis), word);
+        }
+      } else if (word == "f") {
+        faces.push_back(number);
+        std::size_t corners = 0;
+        while (words >> word && word[0] != '#') ++corners;
+        if (corners < 3)
+          throw Error(fmt::format("{}:{}: face {} has {} corners, not three or more", name, number, faces.size(), corners));
+      }
     }
+  }
+
+  static void check_coordinate(const std::string &where, const std::string &word) {
+    float value = 0;
+    const char *begin = word.data() + (word.starts_with('+') ? 1 : 0), *end = word.data() + word.size();
+    const std::from_chars_result read = std::from_chars(begin, end, value);
+    const bool too_large = read.ec == std::errc::result_out_of_range;
+    if (word.empty() || read.ptr != end || (read.ec != std::errc() && !too_large))
+      throw Error(fmt::format("{} is not a number: \"{}\"", where, word));
+    // Numbers too small for a float are out of range as well, and harmless.
+    if (!std::isfinite(value) || (too_large && std::fabs(std::strtod(word.c_str(), nullptr)) > 1))
+      throw Error(fmt::format("{} is not finite: {}", where, word));
   }
 };
 
@@ -55,7 +83,7 @@ Mesh read_obj(const std::filesystem::path &path) {
   const std::string name = path.string();
   const std::string text = read_text(path);
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) throw Error(fmt::format("{}: the file is empty", name));
-  const Lines lines(text);
+  const Lines lines(name, text);
 
   tinyobj::attrib_t attributes;
   std::vector<tinyobj::shape_t> shapes;
@@ -69,13 +97,8 @@ Mesh read_obj(const std::filesystem::path &path) {
   if (attributes.vertices.empty()) throw Error(fmt::format("{}: no vertices (\"v x y z\" lines)", name));
 
   Mesh mesh;
-  for (std::size_t i = 0; i + 2 < attributes.vertices.size(); i += 3) {
-    const Vector3 vertex = {attributes.vertices[i], attributes.vertices[i + 1], attributes.vertices[i + 2]};
-    if (!std::isfinite(vertex.x) || !std::isfinite(vertex.y) || !std::isfinite(vertex.z))
-      throw Error(fmt::format("{}{}: vertex {} is not finite: {}, {}, {}", name, line_of(lines.vertices, i / 3), i / 3 + 1,
-                              vertex.x, vertex.y, vertex.z));
-    mesh.vertices.push_back(vertex);
-  }
+  for (std::size_t i = 0; i + 2 < attributes.vertices.size(); i += 3)
+    mesh.vertices.push_back({attributes.vertices[i], attributes.vertices[i + 1], attributes.vertices[i + 2]});
 
   std::size_t face = 0;
   for (const tinyobj::shape_t &shape : shapes) {

@@ -31,23 +31,24 @@ Vector3 Environment::ambient(Vector3 direction) const {
   return mix(light_.horizon, light_.sky, share);
 }
 
-float Environment::softbox(Vector3 direction, float turn, float half_width, float low, float high) const {
-  const float azimuth = std::atan2(dot(direction, side_), dot(direction, front_)) - turn;
-  const float wrapped = std::remainder(azimuth, 2 * std::numbers::pi_v<float>);
-  const float elevation = std::asin(std::clamp(dot(direction, up_), -1.0f, 1.0f));
-  constexpr float edge = 0.05f;
-  return smooth_step(half_width + edge, half_width - edge, std::fabs(wrapped)) *
-         smooth_step(low - edge, low + edge, elevation) * smooth_step(high + edge, high - edge, elevation);
-}
-
 Vector3 Environment::mirrored(Vector3 direction) const {
   const float height = dot(direction, up_);
   // Below the horizon lies the table: darker the steeper one looks down on it.
   Vector3 light = height >= 0 ? mix(0.55f * light_.horizon, 0.8f * light_.sky, std::sqrt(height))
                               : mix(0.55f * light_.horizon, light_.background, std::fmin(1.0f, -3 * height));
-  light += (3.4f * softbox(direction, 0.0f, 0.30f, -0.15f, 0.85f)) * Vector3{1.0f, 0.95f, 0.88f}; // beside the key light
-  light += (2.2f * softbox(direction, 2.65f, 0.12f, -0.25f, 0.9f)) * Vector3{0.80f, 0.92f, 1.0f}; // the rim strip
-  light += (0.8f * softbox(direction, -1.9f, 0.35f, -0.1f, 0.7f)) * Vector3{1.0f, 0.97f, 0.92f};  // a dim wall
+
+  // Softboxes: upright rectangles in azimuth, counted from the key light, and elevation.
+  const float azimuth = std::atan2(dot(direction, side_), dot(direction, front_));
+  const float elevation = std::asin(std::clamp(height, -1.0f, 1.0f));
+  const auto softbox = [&](float turn, float half_width, float low, float high) {
+    constexpr float edge = 0.05f;
+    const float aside = std::fabs(std::remainder(azimuth - turn, 2 * std::numbers::pi_v<float>));
+    return smooth_step(half_width + edge, half_width - edge, aside) * smooth_step(low - edge, low + edge, elevation) *
+           smooth_step(high + edge, high - edge, elevation);
+  };
+  light += (4.6f * softbox(0.0f, 0.20f, -0.75f, 0.95f)) * Vector3{1.0f, 0.95f, 0.88f};  // beside the key light
+  light += (3.0f * softbox(2.65f, 0.10f, -0.75f, 0.95f)) * Vector3{0.80f, 0.92f, 1.0f}; // the rim strip
+  light += (0.7f * softbox(-1.9f, 0.35f, -0.5f, 0.7f)) * Vector3{1.0f, 0.97f, 0.92f};   // a dim wall
   return light;
 }
 

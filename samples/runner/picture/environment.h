@@ -30,8 +30,6 @@ public:
   float exposure() const { return light_.exposure; }
 
 private:
-  float softbox(Vector3 direction, float turn, float half_width, float low, float high) const;
-
   SceneLight light_;
   Vector3 up_, front_, side_; // front: the key light's direction, levelled
   FarLight key_, rim_;

@@ -19,7 +19,7 @@ private:
   Vector3 gather(Vector3 position, float turn) const;
   void smooth();
 
-  static constexpr int cells = 144;
+  static constexpr int cells = 120;
   const RayScene *scene_;
   const Environment *environment_;
   Vector3 center_, along_, across_;

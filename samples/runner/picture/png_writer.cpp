@@ -10,6 +10,9 @@
 namespace runner {
 
 std::string make_png(const Image &image) {
+  // Twice as fast as the defaults, for a file a tenth larger.
+  stbi_write_png_compression_level = 5;
+  stbi_write_force_png_filter = 4;
   std::string bytes;
   const auto append = [](void *context, void *data, int size) {
     static_cast<std::string *>(context)->append(static_cast<const char *>(data), static_cast<std::size_t>(size));

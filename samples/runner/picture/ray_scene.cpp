@@ -75,9 +75,8 @@ RayScene::RayScene(const Scene &scene) {
   }
   rtcCommitScene(glass_);
 
-  spheres_geometry_ = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_SPHERE_POINT);
-  rtcSetGeometryBuildQuality(spheres_geometry_, RTC_BUILD_QUALITY_MEDIUM);
-  spheres_id_ = rtcAttachGeometry(opaque_, spheres_geometry_);
+  rtcCommitScene(opaque_);
+  if (!solids_.empty() || has_glass_) lift_ = 2e-5f * length(high_ - low_);
 }
 
 RayScene::~RayScene() {
@@ -126,6 +125,10 @@ void RayScene::set_particles(std::vector<float> spheres) {
     }
     lift_ = 2e-5f * length(high_ - low_);
     bounds_known_ = true;
+  }
+  if (spheres_geometry_ == nullptr) {
+    spheres_geometry_ = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+    spheres_id_ = rtcAttachGeometry(opaque_, spheres_geometry_);
   }
   rtcSetSharedGeometryBuffer(spheres_geometry_, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, spheres_.data(), 0,
                              4 * sizeof(float), spheres_.size() / 4);

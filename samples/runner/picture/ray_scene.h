@@ -69,7 +69,7 @@ private:
   RTCSceneTy *opaque_ = nullptr;
   RTCSceneTy *glass_ = nullptr;
   RTCGeometryTy *spheres_geometry_ = nullptr;
-  std::uint32_t spheres_id_ = 0;
+  std::uint32_t spheres_id_ = 0xffffffffu; // until there are particles: no geometry's id
   std::vector<float> spheres_;
   std::vector<Solid> solids_; // by Embree geometry id
   std::optional<Ground> ground_;

@@ -24,17 +24,14 @@ Vector3 up_of(const Scene &scene) {
 } // namespace
 
 Renderer::Renderer(const Scene &scene)
-    : scene_(&scene), camera_(*scene.camera), environment_(scene.light, up_of(scene)), rays_(scene) {
-  forward_ = normalized(camera_.target - camera_.eye);
-  right_ = normalized(cross(forward_, camera_.up));
-  up_ = cross(right_, forward_);
-}
+    : scene_(&scene), camera_(*scene.camera), environment_(scene.light, up_of(scene)), rays_(scene),
+      still_(rays_, environment_, camera_) {}
 
 Image Renderer::render(const Particles &particles) {
   place_particles(particles);
   if (rays_.ground()) ground_light_.emplace(rays_, environment_);
 
-  const int width = camera_.width, height = camera_.height;
+  const int width = camera_.width(), height = camera_.height();
   const auto at = [&](int x, int y) { return static_cast<std::size_t>(y) * width + x; };
   const tbb::blocked_range2d<int> pixels(0, height, 16, 0, width, 16);
   const auto each_pixel = [&](const auto &visit) {
@@ -46,7 +43,7 @@ Image Renderer::render(const Particles &particles) {
 
   std::vector<Sample> first(at(0, height));
   each_pixel([&](int x, int y) {
-    first[at(x, y)] = sample(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, pixel_noise(x, y));
+    first[at(x, y)] = sample(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, at(x, y), pixel_noise(x, y));
   });
 
   // More samples only where something begins or ends: in most of a picture one is enough.
@@ -54,16 +51,15 @@ Image Renderer::render(const Particles &particles) {
   each_pixel([&](int x, int y) {
     const Sample &own = first[at(x, y)];
     bool edge = false;
-    for (int dy = -1; dy <= 1; ++dy)
-      for (int dx = -1; dx <= 1; ++dx) {
-        const int nx = std::clamp(x + dx, 0, width - 1), ny = std::clamp(y + dy, 0, height - 1);
-        edge |= differ(own, first[at(nx, ny)]);
-      }
+    if (x > 0) edge |= differ(own, first[at(x - 1, y)]);
+    if (y > 0) edge |= differ(own, first[at(x, y - 1)]);
+    if (x + 1 < width) edge |= differ(own, first[at(x + 1, y)]);
+    if (y + 1 < height) edge |= differ(own, first[at(x, y + 1)]);
     Vector3 colour = own.display;
     if (edge) {
       constexpr float offsets[4][2] = {{0.375f, 0.125f}, {0.875f, 0.375f}, {0.125f, 0.625f}, {0.625f, 0.875f}};
       for (int i = 0; i < 4; ++i)
-        colour += sample(static_cast<float>(x) + offsets[i][0], static_cast<float>(y) + offsets[i][1],
+        colour += sample(static_cast<float>(x) + offsets[i][0], static_cast<float>(y) + offsets[i][1], at(x, y),
                          fraction(pixel_noise(x, y) + 0.2f * static_cast<float>(i + 1)))
                       .display;
       colour = 0.2f * colour;
@@ -99,44 +95,34 @@ void Renderer::place_particles(const Particles &particles) {
   grain_light_states_ = std::vector<std::atomic<std::uint8_t>>(count);
 }
 
-Ray Renderer::camera_ray(float x, float y) const {
-  const float half = std::tan(camera_.vertical_field_of_view * pi / 360);
-  const float scale = 2 * half / static_cast<float>(camera_.height);
-  const float across = (x - 0.5f * static_cast<float>(camera_.width)) * scale;
-  const float up = (0.5f * static_cast<float>(camera_.height) - y) * scale;
-  return {camera_.eye, normalized(forward_ + across * right_ + up * up_)};
-}
-
 bool Renderer::differ(const Sample &a, const Sample &b) {
   return a.kind != b.kind || a.index != b.index || a.panes != b.panes ||
          dot(a.normal - b.normal, a.normal - b.normal) > 0.08f;
 }
 
-Renderer::Sample Renderer::sample(float x, float y, float noise) {
-  const Ray ray = camera_ray(x, y);
+Renderer::Sample Renderer::sample(float x, float y, std::size_t pixel, float noise) {
+  const Ray ray = camera_.ray(x, y);
   const Hit hit = rays_.closest(ray);
+  Panes own;
+  std::span<const Pane> panes = still_.panes(pixel);
+  if (!still_.evenly_glazed(pixel)) {
+    own = find_panes(rays_, environment_, ray, hit.distance);
+    panes = {own.panes.data(), own.count};
+  }
+
   Sample result;
   result.kind = hit.kind;
   result.index = hit.index;
   result.normal = hit.normal;
-
-  // Every pane in front of it mirrors the studio and takes a little of what is behind.
   Vector3 light, passing = {1, 1, 1};
-  float from = 0;
-  while (result.panes < 8) {
-    const std::optional<Hit> pane = rays_.glass(ray, from, hit.distance);
-    if (!pane) break;
-    const float cosine = -dot(pane->normal, ray.direction);
-    const float mirror = glass_reflectance(cosine);
-    light += mirror * (passing * environment_.mirrored(reflect(ray.direction, pane->normal)));
-    // The longer the way through the pane, the greener.
-    const float way = 1 / std::fmax(cosine, 0.12f);
-    passing = (1 - mirror) * (passing * Vector3{1 - 0.016f * way, 1 - 0.008f * way, 1 - 0.011f * way});
-    from = pane->distance + 2 * rays_.lift();
+  for (const Pane &pane : panes) {
+    if (pane.distance > hit.distance) break;
+    light += passing * pane.mirrored;
+    passing = passing * pane.passing;
     ++result.panes;
   }
-  const float across = x / static_cast<float>(camera_.width), down = y / static_cast<float>(camera_.height);
-  light += passing * shade(ray, hit, noise, environment_.background(across, down));
+  const float across = x / static_cast<float>(camera_.width()), down = y / static_cast<float>(camera_.height());
+  light += passing * shade(ray, hit, pixel, noise, environment_.background(across, down));
 
   const float cx = across - 0.5f, cy = down - 0.5f;
   const float vignette = 1 - 0.35f * (cx * cx + cy * cy);
@@ -144,22 +130,25 @@ Renderer::Sample Renderer::sample(float x, float y, float noise) {
   return result;
 }
 
-Vector3 Renderer::shade(const Ray &ray, const Hit &hit, float noise, Vector3 background) {
+Vector3 Renderer::shade(const Ray &ray, const Hit &hit, std::size_t pixel, float noise, Vector3 background) {
   switch (hit.kind) {
   case Hit::particle:
     return shade_particle(ray, hit, noise);
   case Hit::solid:
-    return shade_solid(ray, hit, noise);
-  case Hit::ground: {
-    const Vector3 lit = (1 / pi) * (rays_.ground()->colour * ground_light_->irradiance(hit.position));
-    // The ground runs into the backdrop without a horizon.
-    const float reach = length(rays_.high() - rays_.low());
-    const float away = std::fmax(0.0f, length(hit.position - camera_.target) / reach - 0.9f);
-    return mix(background, lit, std::exp(-1.1f * away * away));
-  }
+    return shade_solid(ray, hit, pixel, noise);
+  case Hit::ground:
+    return shade_ground(hit, background);
   default:
     return background;
   }
+}
+
+Vector3 Renderer::shade_ground(const Hit &hit, Vector3 background) const {
+  const Vector3 lit = (1 / pi) * (rays_.ground()->colour * ground_light_->irradiance(hit.position));
+  // The ground runs into the backdrop without a horizon.
+  const float reach = length(rays_.high() - rays_.low());
+  const float away = std::fmax(0.0f, length(hit.position - camera_.target()) / reach - 0.5f);
+  return mix(background, lit, std::exp(-1.3f * away * away));
 }
 
 GrainLight Renderer::grain_light(std::uint32_t index) {
@@ -203,37 +192,33 @@ Vector3 Renderer::shade_particle(const Ray &ray, const Hit &hit, float noise) {
   return (1 / pi) * (colours_[hit.index] * arriving);
 }
 
-Vector3 Renderer::shade_solid(const Ray &ray, const Hit &hit, float noise) const {
+Vector3 Renderer::colour_of(const Hit &hit) const {
+  return hit.kind == Hit::particle ? colours_[hit.index] : rays_.solids()[hit.index].colour;
+}
+
+Vector3 Renderer::shade_solid(const Ray &ray, const Hit &hit, std::size_t pixel, float noise) const {
   const Solid &solid = rays_.solids()[hit.index];
+  const SkyLight *known = still_.sky_light(pixel, hit);
+  const SkyLight sky = known != nullptr ? *known : gather_sky_light(rays_, environment_, hit.position, hit.normal, 8, noise);
   const Vector3 mirrored = reflect(ray.direction, hit.normal);
-  const Frame frame(hit.normal);
-  const Vector3 start = hit.position + rays_.lift() * hit.normal;
-  constexpr int sky_rays = 10;
-  Vector3 arriving;
-  float open = 0;
-  for (int i = 0; i < sky_rays; ++i) {
-    const Vector3 direction = cosine_direction(i, sky_rays, noise, hit.normal, frame);
-    if (rays_.occluded({start, direction})) continue;
-    arriving += (pi / sky_rays) * environment_.ambient(direction);
-    open += 1.0f / sky_rays;
-  }
-  arriving += (0.08f * pi * (1 - open)) * environment_.ambient(environment_.up());
+  Vector3 arriving = sky.irradiance;
   if (solid.appearance == Appearance::metal) {
     arriving += direct(environment_.key(), hit, -ray.direction, noise, 2, 0.6f);
-    const Vector3 mirror = rays_.occluded({start, mirrored}) ? 0.15f * arriving : environment_.mirrored(mirrored);
-    return solid.colour * (0.72f * mirror + (0.35f / pi) * arriving);
+    const Hit other = rays_.closest({hit.position + rays_.lift() * hit.normal, mirrored});
+    const bool free = other.kind == Hit::nothing || other.kind == Hit::ground; // the table is part of the mirrored studio
+    const Vector3 mirror = free ? environment_.mirrored(mirrored) : (0.5f / pi) * (sky.irradiance * colour_of(other));
+    return solid.colour * (0.8f * mirror + (0.22f / pi) * arriving);
   }
   arriving += direct(environment_.key(), hit, -ray.direction, noise, 3, 0.15f);
   arriving += direct(environment_.rim(), hit, -ray.direction, noise, 1, 0.15f);
-  Vector3 colour = solid.colour;
-  Vector3 sheen;
-  if (solid.appearance == Appearance::wood) {
-    colour = wood_colour(solid.colour, hit.position - solid.origin, 0.012f * length(rays_.high() - rays_.low()));
-    // A thin coat of varnish.
-    const float away = 1 + dot(ray.direction, hit.normal);
-    sheen = (0.35f * (0.04f + 0.5f * away * away * away * away * away) * open) * environment_.mirrored(mirrored);
-  }
-  return (1 / pi) * (colour * arriving) + sheen;
+  if (solid.appearance != Appearance::wood) return (1 / pi) * (solid.colour * arriving);
+
+  const float ring = 0.012f * length(rays_.high() - rays_.low());
+  const Vector3 colour = wood_colour(solid.colour, hit.position - solid.origin, ring);
+  // A thin coat of varnish.
+  const float away = 1 + dot(ray.direction, hit.normal);
+  const float sheen = 0.35f * (0.04f + 0.5f * away * away * away * away * away) * sky.open;
+  return (1 / pi) * (colour * arriving) + sheen * environment_.mirrored(mirrored);
 }
 
 } // namespace runner

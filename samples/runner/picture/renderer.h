@@ -6,11 +6,13 @@
 #include <vector>
 
 #include "particles.h"
+#include "picture/camera.h"
 #include "picture/environment.h"
 #include "picture/grain_light.h"
 #include "picture/ground_light.h"
 #include "picture/image.h"
 #include "picture/ray_scene.h"
+#include "picture/still_layer.h"
 #include "scene.h"
 
 namespace runner {
@@ -33,22 +35,23 @@ private:
   };
 
   void place_particles(const Particles &particles);
-  Ray camera_ray(float x, float y) const;
-  Sample sample(float x, float y, float noise);
+  // A ray through the picture at x, y, which lies in the pixel.
+  Sample sample(float x, float y, std::size_t pixel, float noise);
   static bool differ(const Sample &a, const Sample &b);
-  Vector3 shade(const Ray &ray, const Hit &hit, float noise, Vector3 background);
+  Vector3 shade(const Ray &ray, const Hit &hit, std::size_t pixel, float noise, Vector3 background);
   Vector3 shade_particle(const Ray &ray, const Hit &hit, float noise);
-  Vector3 shade_solid(const Ray &ray, const Hit &hit, float noise) const;
+  Vector3 shade_solid(const Ray &ray, const Hit &hit, std::size_t pixel, float noise) const;
+  Vector3 shade_ground(const Hit &hit, Vector3 background) const;
   Vector3 direct(const FarLight &light, const Hit &hit, Vector3 view, float noise, int rays, float gloss) const;
+  Vector3 colour_of(const Hit &hit) const; // of a solid or a particle
   GrainLight grain_light(std::uint32_t index);
 
   const Scene *scene_;
-  SceneCamera camera_;
-  Vector3 right_, up_, forward_;
+  Camera camera_;
   Environment environment_;
   RayScene rays_;
+  StillLayer still_;
   std::optional<GroundLight> ground_light_;
-  const Particles *particles_ = nullptr;
   std::vector<float> radii_;
   std::vector<Vector3> colours_;
   // Light of the particles that the camera has met so far: threads may gather the same one twice, with the same result.

@@ -49,7 +49,7 @@ Vector3 wood_colour(Vector3 colour, Vector3 point, float size) {
   const float ring = fraction(distance);
   const float late = std::pow(ring, 3.0f); // each ring darkens towards its end
   const float pores = value_noise({0.9f * p.x, 9 * p.y, 9 * p.z});
-  return (1.08f - 0.42f * late + 0.09f * pores) * colour;
+  return (1.06f - 0.30f * late + 0.10f * pores) * colour;
 }
 
 } // namespace runner

@@ -9,11 +9,12 @@
 namespace runner {
 
 inline float display_value(float light) {
-  const float white = 4.5f; // this much light is pure white
+  const float white = 4.0f; // this much light is pure white
   const float x = std::fmax(0.0f, light);
-  const float compressed = std::fmin(1.0f, x * (1 + x / (white * white)) / (1 + 0.82f * x) * 0.93f);
-  const float contrast = compressed * (0.80f + 0.36f * compressed - 0.16f * compressed * compressed);
-  return contrast <= 0.0031308f ? 12.92f * contrast : 1.055f * std::pow(contrast, 1 / 2.4f) - 0.055f; // sRGB
+  const float shoulder =
+      std::fmin(1.0f, x * (1 + x / (white * white)) / (1 + x) * (1 + white) / (white + 1 + 1 / white) * 1.05f);
+  const float toe = shoulder * (0.62f + 0.76f * shoulder - 0.38f * shoulder * shoulder);
+  return toe <= 0.0031308f ? 12.92f * toe : 1.055f * std::pow(toe, 1 / 2.4f) - 0.055f; // sRGB
 }
 
 inline Vector3 display_colour(Vector3 light) {
