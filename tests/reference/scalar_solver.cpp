@@ -99,9 +99,17 @@ template <typename Real> Matrix3<Real> ScalarSolver<Real>::velocity_gradient(std
   const std::uint32_t *neighbour = neighbourhoods_.neighbour.data();
   const Vector3<Real> *gradient = neighbourhoods_.gradient.data();
   const std::uint32_t last = neighbourhoods_.first_pair[particle + 1];
-  Matrix3<Real> sum = -motions[particle].velocity * neighbourhoods_.gradient_sum[particle].transpose();
-  for (std::uint32_t pair = neighbourhoods_.first_pair[particle]; pair < last; ++pair)
-    sum += motions[neighbour[pair]].velocity * gradient[pair].transpose();
+  // Column by column, so that the sums stay in registers.
+  Vector3<Real> by_x = Vector3<Real>::Zero(), by_y = by_x, by_z = by_x;
+  for (std::uint32_t pair = neighbourhoods_.first_pair[particle]; pair < last; ++pair) {
+    const Vector3<Real> &velocity = motions[neighbour[pair]].velocity;
+    by_x += gradient[pair].x() * velocity;
+    by_y += gradient[pair].y() * velocity;
+    by_z += gradient[pair].z() * velocity;
+  }
+  Matrix3<Real> sum;
+  sum << by_x, by_y, by_z;
+  sum -= motions[particle].velocity * neighbourhoods_.gradient_sum[particle].transpose();
   return sum;
 }
 
@@ -141,12 +149,16 @@ template <typename Real> void ScalarSolver<Real>::solve_particle(std::size_t par
   constraint_squares_ += double(constraint) * double(constraint);
 
   const Matrix3<Real> impulse = derivative * (change / h);
+  const Vector3<Real> by_x = impulse.col(0), by_y = impulse.col(1), by_z = impulse.col(2);
   const std::uint32_t *neighbour = neighbourhoods_.neighbour.data();
   const Vector3<Real> *gradient = neighbourhoods_.gradient.data();
   const std::uint32_t last = neighbourhoods_.first_pair[particle + 1];
   for (std::uint32_t pair = neighbourhoods_.first_pair[particle]; pair < last; ++pair) {
     Motion<Real> &motion = motions[neighbour[pair]];
-    motion.velocity += motion.inverse_mass * (impulse * gradient[pair]);
+    const Vector3<Real> weighted = motion.inverse_mass * gradient[pair];
+    motion.velocity += weighted.x() * by_x;
+    motion.velocity += weighted.y() * by_y;
+    motion.velocity += weighted.z() * by_z;
   }
   motions[particle].velocity -= motions[particle].inverse_mass * (change / h) * own_gradient;
 }
