@@ -1,0 +1,69 @@
+/* What is measured: a block of particles in motion, on one machine configuration, by the library or by the scalar reference. */
+#pragma once
+
+#include "scenes.h"
+
+#include <benchmark/benchmark.h>
+#include <limits>
+
+namespace loam::benchmarks {
+
+struct Case {
+  std::string name; // of the configuration; the particle count follows it
+  std::size_t particles = 65536;
+  std::uint32_t law = LOAM_LAW_DRUCKER_PRAGER;
+  std::uint32_t backend = LOAM_BACKEND_CPU;
+  std::uint32_t solver = LOAM_SOLVER_GAUSS_SEIDEL;
+  std::uint32_t instruction_set = LOAM_INSTRUCTION_SET_AUTO;
+  std::uint32_t threads = 1;
+};
+
+/* Everyone measures the same stretch of the same motion. */
+inline constexpr float substep_seconds = 5e-4f;
+inline constexpr int iterations = 5;
+inline constexpr int warm_up_substeps = 10;
+inline int measured_substeps(std::size_t particles) { return particles > 100000 ? 10 : particles > 20000 ? 20 : 60; }
+
+/* A block that is sheared and collapses: sand and plasticine yield everywhere, rubber is strained everywhere. */
+inline scenes::Scene scene_of(const Case &measured) {
+  const loam_material_def material = measured.law == LOAM_LAW_ELASTIC     ? scenes::rubber()
+                                     : measured.law == LOAM_LAW_VON_MISES ? scenes::plasticine(500)
+                                                                          : scenes::sand();
+  return scenes::jittered_block(material, measured.particles);
+}
+
+/* Names of counters, which the table at the end reads back. Rates are those of the fastest substep: whatever else the machine does
+ * only ever adds time. A pair visit is one neighbour pair in one iteration. */
+inline constexpr const char *solve_rate_counter = "solve_visits/s";
+inline constexpr const char *step_rate_counter = "step_visits/s";
+
+/* Collects substeps and writes the counters. */
+class Tally {
+public:
+  void add(double step_seconds, double solve_seconds, double pair_visits) {
+    if (pair_visits <= 0) return;
+    step_ = std::min(step_, step_seconds / pair_visits);
+    solve_ = std::min(solve_, solve_seconds / pair_visits);
+    pair_visits_ = pair_visits;
+  }
+
+  void write(benchmark::State &state, std::size_t particles) const {
+    const double visits_per_particle = pair_visits_ / double(particles);
+    state.counters[solve_rate_counter] = solve_ > 0 ? 1 / solve_ : 0;
+    state.counters[step_rate_counter] = 1 / step_;
+    state.counters["ns/particle/substep"] = 1e9 * step_ * visits_per_particle;
+    state.counters["neighbours"] = visits_per_particle / iterations;
+  }
+
+private:
+  double step_ = std::numeric_limits<double>::max(), solve_ = step_; // seconds a pair visit
+  double pair_visits_ = 0;                                           // in the last substep
+};
+
+void run_library(benchmark::State &state, const Case &measured);
+void run_reference(benchmark::State &state, const Case &measured);
+
+/* Whether the library has this backend and instruction set here. */
+bool is_available(const Case &measured);
+
+} // namespace loam::benchmarks

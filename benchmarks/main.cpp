@@ -1,0 +1,96 @@
+/* loam-benchmarks: how fast the library is, against a plain scalar code in the same run.
+ *
+ * Every option of Google Benchmark works; --benchmark_filter=gauss-seidel/auto for the headline alone. benchmarks/record.sh keeps a run. */
+#include "case.h"
+#include "ratio_table.h"
+
+#include <thread>
+
+namespace {
+
+using namespace loam::benchmarks;
+
+void add(const std::string &prefix, const Case &measured, void (*run)(benchmark::State &, const Case &)) {
+  const std::string name = prefix + "/" + measured.name + "/" + std::to_string(measured.particles);
+  benchmark::RegisterBenchmark(name.c_str(), [measured, run](benchmark::State &state) { run(state, measured); })
+      ->UseManualTime()
+      ->Unit(benchmark::kMillisecond)
+      ->Iterations(measured_substeps(measured.particles));
+}
+
+void add_library(const Case &measured) {
+  if (is_available(measured)) add("library", measured, run_library);
+}
+
+void add_cases() {
+  constexpr std::size_t small = 8192, medium = 65536, large = 262144;
+
+  for (const std::size_t particles : {small, medium}) {
+    Case scalar;
+    scalar.name = "sand/scalar";
+    scalar.particles = particles;
+    add("reference", scalar, run_reference);
+  }
+
+  const std::uint32_t most_threads = std::thread::hardware_concurrency() > 1 ? 2 : 1;
+  for (const std::size_t particles : {small, medium, large})
+    for (std::uint32_t threads = 1; threads <= most_threads; ++threads) {
+      Case headline;
+      headline.name = "sand/gauss-seidel/auto/threads:" + std::to_string(threads);
+      headline.particles = particles;
+      headline.threads = threads;
+      add_library(headline);
+    }
+
+  for (const std::size_t particles : {small, medium}) {
+    Case jacobi;
+    jacobi.name = "sand/jacobi/auto/threads:1";
+    jacobi.particles = particles;
+    jacobi.solver = LOAM_SOLVER_JACOBI;
+    add_library(jacobi);
+  }
+
+  const std::pair<const char *, std::uint32_t> instruction_sets[] = {{"portable", LOAM_INSTRUCTION_SET_PORTABLE},
+                                                                     {"sse4", LOAM_INSTRUCTION_SET_SSE4},
+                                                                     {"avx2", LOAM_INSTRUCTION_SET_AVX2},
+                                                                     {"avx512", LOAM_INSTRUCTION_SET_AVX512}};
+  for (const auto &[set_name, set] : instruction_sets) {
+    Case narrow;
+    narrow.name = std::string("sand/gauss-seidel/") + set_name + "/threads:1";
+    narrow.instruction_set = set;
+    add_library(narrow);
+  }
+
+  const std::pair<const char *, std::uint32_t> laws[] = {{"rubber", LOAM_LAW_ELASTIC}, {"plasticine", LOAM_LAW_VON_MISES}};
+  for (const auto &[law_name, law] : laws) {
+    Case other;
+    other.name = std::string(law_name) + "/gauss-seidel/auto/threads:1";
+    other.law = law;
+    add_library(other);
+  }
+
+  const std::pair<const char *, std::uint32_t> solvers[] = {{"gauss-seidel", LOAM_SOLVER_GAUSS_SEIDEL},
+                                                            {"jacobi", LOAM_SOLVER_JACOBI}};
+  for (const auto &[solver_name, solver] : solvers)
+    for (const std::size_t particles : {small, medium, large, 4 * large}) {
+      Case device;
+      device.name = std::string("sand/") + solver_name + "/cuda";
+      device.particles = particles;
+      device.backend = LOAM_BACKEND_CUDA;
+      device.solver = solver;
+      add_library(device);
+    }
+}
+
+} // namespace
+
+int main(int argument_count, char **arguments) {
+  benchmark::Initialize(&argument_count, arguments);
+  if (benchmark::ReportUnrecognizedArguments(argument_count, arguments)) return 1;
+  add_cases();
+  RatioTable table;
+  benchmark::RunSpecifiedBenchmarks(&table);
+  table.print();
+  benchmark::Shutdown();
+  return 0;
+}

@@ -1,0 +1,26 @@
+/* The plain scalar reference in single precision on the same scenes, so that the library's speed is a ratio within one run. */
+#include "case.h"
+#include "from_scene.h"
+
+namespace loam::benchmarks {
+
+void run_reference(benchmark::State &state, const Case &measured) {
+  const scenes::Scene scene = scene_of(measured);
+  reference::Settings settings = reference::settings_for(scene);
+  settings.iterations = iterations;
+  auto solver = reference::solver_for<float>(scene, settings);
+  for (int substep = 0; substep < warm_up_substeps; ++substep) solver.substep(substep_seconds);
+
+  Tally tally;
+  for ([[maybe_unused]] auto _ : state) {
+    const reference::StageSeconds before = solver.seconds();
+    const std::uint64_t visits_before = solver.pair_visits();
+    solver.substep(substep_seconds);
+    const double seconds = solver.seconds().total() - before.total();
+    tally.add(seconds, solver.seconds().solve - before.solve, double(solver.pair_visits() - visits_before));
+    state.SetIterationTime(seconds);
+  }
+  tally.write(state, measured.particles);
+}
+
+} // namespace loam::benchmarks
