@@ -14,17 +14,28 @@ void set_last_error(const char *text) noexcept { std::snprintf(last_error, sizeo
 
 const char *loam_status_name(loam_status status) {
   switch (status) {
-  case LOAM_OK: return "LOAM_OK";
-  case LOAM_ERROR_INVALID_ARGUMENT: return "LOAM_ERROR_INVALID_ARGUMENT";
-  case LOAM_ERROR_INVALID_HANDLE: return "LOAM_ERROR_INVALID_HANDLE";
-  case LOAM_ERROR_OUT_OF_MEMORY: return "LOAM_ERROR_OUT_OF_MEMORY";
-  case LOAM_ERROR_CAPACITY: return "LOAM_ERROR_CAPACITY";
-  case LOAM_ERROR_BACKEND_UNAVAILABLE: return "LOAM_ERROR_BACKEND_UNAVAILABLE";
-  case LOAM_ERROR_IN_USE: return "LOAM_ERROR_IN_USE";
-  case LOAM_ERROR_INVALID_MESH: return "LOAM_ERROR_INVALID_MESH";
-  case LOAM_ERROR_DEVICE: return "LOAM_ERROR_DEVICE";
-  case LOAM_ERROR_INTERNAL: return "LOAM_ERROR_INTERNAL";
-  default: return "LOAM_ERROR_UNKNOWN";
+  case LOAM_OK:
+    return "LOAM_OK";
+  case LOAM_ERROR_INVALID_ARGUMENT:
+    return "LOAM_ERROR_INVALID_ARGUMENT";
+  case LOAM_ERROR_INVALID_HANDLE:
+    return "LOAM_ERROR_INVALID_HANDLE";
+  case LOAM_ERROR_OUT_OF_MEMORY:
+    return "LOAM_ERROR_OUT_OF_MEMORY";
+  case LOAM_ERROR_CAPACITY:
+    return "LOAM_ERROR_CAPACITY";
+  case LOAM_ERROR_BACKEND_UNAVAILABLE:
+    return "LOAM_ERROR_BACKEND_UNAVAILABLE";
+  case LOAM_ERROR_IN_USE:
+    return "LOAM_ERROR_IN_USE";
+  case LOAM_ERROR_INVALID_MESH:
+    return "LOAM_ERROR_INVALID_MESH";
+  case LOAM_ERROR_DEVICE:
+    return "LOAM_ERROR_DEVICE";
+  case LOAM_ERROR_INTERNAL:
+    return "LOAM_ERROR_INTERNAL";
+  default:
+    return "LOAM_ERROR_UNKNOWN";
   }
 }
 

@@ -36,7 +36,8 @@ loam_status loam_collider_destroy(loam_world *world, loam_collider_id collider) 
 
 namespace {
 
-loam_status pose(loam_world *world, loam_collider_id collider, const float position[3], const float rotation[4], bool at_once) {
+loam_status pose(loam_world *world, loam_collider_id collider, const float position[3], const float rotation[4],
+                 bool at_once) {
   return guarded(world, [&] {
     check_pointer(world, "world");
     check_pointer(position, "position");
@@ -47,11 +48,13 @@ loam_status pose(loam_world *world, loam_collider_id collider, const float posit
 
 } // namespace
 
-loam_status loam_collider_move(loam_world *world, loam_collider_id collider, const float position[3], const float rotation[4]) {
+loam_status loam_collider_move(loam_world *world, loam_collider_id collider, const float position[3],
+                               const float rotation[4]) {
   return pose(world, collider, position, rotation, false);
 }
 
-loam_status loam_collider_place(loam_world *world, loam_collider_id collider, const float position[3], const float rotation[4]) {
+loam_status loam_collider_place(loam_world *world, loam_collider_id collider, const float position[3],
+                                const float rotation[4]) {
   return pose(world, collider, position, rotation, true);
 }
 

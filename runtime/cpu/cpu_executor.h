@@ -140,15 +140,10 @@ private:
               [&](int first, int last) { launch(&stage, pairs, first_batch + first, first_batch + last); });
   }
   template <class Stage> void over_candidates(const CellTable &table, const Stage &stage) {
-    const CpuCandidates views = {table.x,
-                                 table.y,
-                                 table.z,
-                                 table.keys,
-                                 table.starts,
-                                 {table.grid.size[0], table.grid.size[1], table.grid.size[2]},
-                                 order_.slots(),
-                                 order_.offsets(),
-                                 order_.indices()};
+    const CpuCandidates views = {
+        table.x,        table.y,          table.z,
+        table.keys,     table.starts,     {table.grid.size[0], table.grid.size[1], table.grid.size[2]},
+        order_.slots(), order_.offsets(), order_.indices()};
     const auto launch = table_->candidate[IndexOf<Stage, CandidateStages>::value];
     in_chunks(table.particle_count, 512, [&](int first, int last) { launch(&stage, views, first, last); });
   }

@@ -20,26 +20,33 @@ const KernelTable *get_table();
 }
 
 // __builtin_cpu_supports also asks whether the operating system saves the wide registers.
-static bool has_sse4() { return __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("pclmul") && __builtin_cpu_supports("ssse3"); }
+static bool has_sse4() {
+  return __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("pclmul") && __builtin_cpu_supports("ssse3");
+}
 static bool has_avx2() {
   return has_sse4() && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
          __builtin_cpu_supports("bmi2");
 }
 static bool has_avx512() {
-  return has_avx2() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
-         __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512cd");
+  return has_avx2() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+         __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512cd");
 }
 #endif
 
 const KernelTable *kernel_table(unsigned instruction_set) {
   switch (instruction_set) {
-  case LOAM_INSTRUCTION_SET_PORTABLE: return portable::get_table();
+  case LOAM_INSTRUCTION_SET_PORTABLE:
+    return portable::get_table();
 #if defined(LOAM_X86_KERNELS)
-  case LOAM_INSTRUCTION_SET_SSE4: return has_sse4() ? sse4::get_table() : nullptr;
-  case LOAM_INSTRUCTION_SET_AVX2: return has_avx2() ? avx2::get_table() : nullptr;
-  case LOAM_INSTRUCTION_SET_AVX512: return has_avx512() ? avx512::get_table() : nullptr;
+  case LOAM_INSTRUCTION_SET_SSE4:
+    return has_sse4() ? sse4::get_table() : nullptr;
+  case LOAM_INSTRUCTION_SET_AVX2:
+    return has_avx2() ? avx2::get_table() : nullptr;
+  case LOAM_INSTRUCTION_SET_AVX512:
+    return has_avx512() ? avx512::get_table() : nullptr;
 #endif
-  default: return nullptr;
+  default:
+    return nullptr;
   }
 }
 
@@ -52,11 +59,16 @@ unsigned best_instruction_set() {
 
 const char *instruction_set_name(unsigned instruction_set) {
   switch (instruction_set) {
-  case LOAM_INSTRUCTION_SET_PORTABLE: return "portable";
-  case LOAM_INSTRUCTION_SET_SSE4: return "SSE4.2";
-  case LOAM_INSTRUCTION_SET_AVX2: return "AVX2";
-  case LOAM_INSTRUCTION_SET_AVX512: return "AVX-512";
-  default: return "none";
+  case LOAM_INSTRUCTION_SET_PORTABLE:
+    return "portable";
+  case LOAM_INSTRUCTION_SET_SSE4:
+    return "SSE4.2";
+  case LOAM_INSTRUCTION_SET_AVX2:
+    return "AVX2";
+  case LOAM_INSTRUCTION_SET_AVX512:
+    return "AVX-512";
+  default:
+    return "none";
   }
 }
 

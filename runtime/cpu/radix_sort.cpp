@@ -18,7 +18,9 @@ void RadixSort::sort(Workers &workers, std::uint32_t *keys, std::uint32_t *value
   std::uint32_t *from_keys = keys, *from_values = values, *to_keys = keys_.data(), *to_values = values_.data();
   for (int shift = 0; shift < key_bits; shift += digit_bits) {
     const int used = 1 << std::min(digit_bits, key_bits - shift);
-    const auto digit = [&](std::uint32_t key) { return static_cast<int>((key >> shift) & static_cast<unsigned>(digits - 1)); };
+    const auto digit = [&](std::uint32_t key) {
+      return static_cast<int>((key >> shift) & static_cast<unsigned>(digits - 1));
+    };
     workers.loop(chunks, [&](int c) {
       int *counts = &histogram_[static_cast<std::size_t>(c) * digits];
       std::memset(counts, 0, static_cast<std::size_t>(used) * sizeof(int));

@@ -103,7 +103,7 @@ struct TeamOverCandidates {
   // Candidates of the run that are not the particle itself. Differences of indices are exact or at least keep their sign.
   LOAM_FN Mask other(const Candidate &k) const {
     const Pack left(static_cast<float>(k.last - k.base)), self(static_cast<float>(particle - k.base));
-    return both(lane_numbers < left, either(lane_numbers < self, lane_numbers > self));
+    return both(lane_numbers < left, either(lane_numbers<self, lane_numbers> self));
   }
   LOAM_FN Mask owned(const Candidate &k) const {
     const Pack self(static_cast<float>(particle - k.base)), half(0.5f);

@@ -46,7 +46,9 @@ struct TeamOverCells {
 
   // of a neighbour
   LOAM_FN Vec4<Pack> neighbour_velocity(const Neighbour &k) const { return load_rows(d.velocities, k.index); }
-  LOAM_FN void set_neighbour_velocity(const Neighbour &k, const Vec4<Pack> &v) const { store_rows(d.velocities, k.index, v); }
+  LOAM_FN void set_neighbour_velocity(const Neighbour &k, const Vec4<Pack> &v) const {
+    store_rows(d.velocities, k.index, v);
+  }
   LOAM_FN Vec4<Pack> neighbour_row(const Neighbour &k, const Row *rows) const { return load_rows(rows, k.index); }
   LOAM_FN Vec3<Pack> gradient(const Neighbour &k) const {
     return {Pack::load(k.gradient), Pack::load(k.gradient + W), Pack::load(k.gradient + 2 * W)};
@@ -89,14 +91,17 @@ struct TeamOverCells {
     value.store(lanes);
     for (int l = 0; l < d.active[b]; ++l) values[static_cast<long>(own(b)[l]) * stride + offset] = lanes[l];
   }
+  // 0 in idle lanes: they have no neighbours, whatever particle they stand in for.
   LOAM_FN Pack own_count(int b, const int *counts) const {
     alignas(64) float lanes[W];
-    for (int l = 0; l < W; ++l) lanes[l] = static_cast<float>(counts[own(b)[l]]);
+    for (int l = 0; l < W; ++l) lanes[l] = l < d.active[b] ? static_cast<float>(counts[own(b)[l]]) : 0.0f;
     return Pack::load(lanes);
   }
 
   // of the record
-  LOAM_FN float *place(int b, int field) const { return d.records + (static_cast<long>(b) * Record::field_count + field) * W; }
+  LOAM_FN float *place(int b, int field) const {
+    return d.records + (static_cast<long>(b) * Record::field_count + field) * W;
+  }
   LOAM_FN Pack field(int b, int field) const { return Pack::load(place(b, field)); }
   LOAM_FN void set_field(int b, int field, Pack value) const { value.store(place(b, field)); }
   LOAM_FN Vec3<Pack> vector(int b, int f) const { return {field(b, f), field(b, f + 1), field(b, f + 2)}; }

@@ -8,9 +8,9 @@
 namespace loam {
 
 VisitOrder::VisitOrder(const HostAllocator &allocator, int width)
-    : width_(width), entries_(allocator), group_first_batch_(allocator), group_first_entry_(allocator), group_pass_(allocator),
-      ids_(allocator), active_(allocator), offsets_(allocator), close_steps_(allocator), slots_(allocator), indices_(allocator),
-      gradients_(allocator), records_(allocator) {}
+    : width_(width), entries_(allocator), group_first_batch_(allocator), group_first_entry_(allocator),
+      group_pass_(allocator), ids_(allocator), active_(allocator), offsets_(allocator), close_steps_(allocator),
+      slots_(allocator), indices_(allocator), gradients_(allocator), records_(allocator) {}
 
 void VisitOrder::reserve(std::size_t particle_capacity, int material_count) {
   slots_.reserve(particle_capacity);
@@ -206,7 +206,7 @@ void VisitOrder::fill_idle_lanes(Workers &workers) {
 }
 
 CpuPairs VisitOrder::pairs(Row *velocities) {
-  return {velocities,      ids_.data(),     active_.data(),    offsets_.data(),
+  return {velocities,          ids_.data(),     active_.data(),    offsets_.data(),
           close_steps_.data(), indices_.data(), gradients_.data(), records_.data()};
 }
 

@@ -34,7 +34,8 @@ constexpr int spins_before_blocking = 500;
 
 } // namespace
 
-Workers::Workers(unsigned thread_count, const loam_job_system &job_system) : thread_count_(thread_count), job_system_(job_system) {
+Workers::Workers(unsigned thread_count, const loam_job_system &job_system)
+    : thread_count_(thread_count), job_system_(job_system) {
   if (thread_count_ == 0) thread_count_ = std::thread::hardware_concurrency();
   if (thread_count_ == 0) thread_count_ = 1;
 }
@@ -86,7 +87,8 @@ void Workers::run_loop(int chunks, ChunkFunction function, void *data) {
   const std::uint64_t generation = generation_of(word_.load(std::memory_order_relaxed)) + 1;
   word_.store(make_word(generation, static_cast<std::uint64_t>(chunks), 0), std::memory_order_release);
   word_.notify_all();
-  while (take_chunk(word_.load(std::memory_order_acquire))) {}
+  while (take_chunk(word_.load(std::memory_order_acquire))) {
+  }
   for (int spins = 0; done_.load(std::memory_order_acquire) != chunks;) {
     if (++spins < 4 * spins_before_blocking)
       pause();

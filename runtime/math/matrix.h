@@ -9,9 +9,7 @@ template <class T> struct Mat3 {
   T m[3][3]; // m[row][column]
 };
 
-template <class T> struct Sym3 {
-  T xx, yy, zz, xy, xz, yz;
-};
+template <class T> struct Sym3 { T xx, yy, zz, xy, xz, yz; };
 
 template <class T> LOAM_FN Mat3<T> zero_matrix() {
   const T z(0.0f);

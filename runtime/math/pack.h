@@ -60,7 +60,9 @@ LOAM_FN unsigned mask_bits(Mask m) {
 // Four registers of rows: register a holds, in its 128-bit block q, the row index[a + 4 q]; after the transposition within blocks, lane l
 // belongs to index[l].
 template <int First> LOAM_FN NativePack load_blocks(const float *rows, const int *index) {
-  const auto block = [&](int q) { return hn::Load(BlockTag(), rows + 4 * static_cast<std::ptrdiff_t>(index[First + 4 * q])); };
+  const auto block = [&](int q) {
+    return hn::Load(BlockTag(), rows + 4 * static_cast<std::ptrdiff_t>(index[First + 4 * q]));
+  };
 #if LOAM_PACK_WIDTH == 16
   const hn::CappedTag<float, 8> half;
   return hn::Combine(FloatTag(), hn::Combine(half, block(3), block(2)), hn::Combine(half, block(1), block(0)));

@@ -12,8 +12,8 @@ namespace loam {
 
 // log(1 + x) / x for x in [-0.35, 0.45], relative error 6e-9 before rounding (minimax fit).
 template <class T> LOAM_FN T log1p_over_x_coefficient(int i) {
-  constexpr float k[10] = {1.000000005e+00f, -4.999996106e-01f, 3.333312818e-01f,  -2.500388613e-01f, 2.001378737e-01f,
-                           -1.656617288e-01f, 1.395796580e-01f, -1.336425723e-01f, 1.421294707e-01f,  -8.830662971e-02f};
+  constexpr float k[10] = {1.000000005e+00f,  -4.999996106e-01f, 3.333312818e-01f,  -2.500388613e-01f, 2.001378737e-01f,
+                           -1.656617288e-01f, 1.395796580e-01f,  -1.336425723e-01f, 1.421294707e-01f,  -8.830662971e-02f};
   return T(k[i]);
 }
 template <class T> LOAM_FN T log1p_over_x(T x) {
@@ -34,15 +34,16 @@ template <class T> LOAM_FN T log_by_roots(T y) {
 // log(1 + x), x clamped to [-0.9, 9].
 template <class T> LOAM_FN T log1p_bounded(T x) {
   T result = x * log1p_over_x(x);
-  const auto outside = either(x < T(-0.35f), x > T(0.45f));
+  const auto outside = either(x<T(-0.35f), x> T(0.45f));
   if (any(outside)) result = select(outside, log_by_roots(minimum(maximum(x, T(-0.9f)), T(9.0f)) + T(1.0f)), result);
   return result;
 }
 
 // exp(x) - 1 by its Taylor series; relative error 3e-8 for |x| <= 1, 1e-4 at |x| = 2.
 template <class T> LOAM_FN T expm1_series(T x) {
-  constexpr float inverse_factorial[11] = {1.0f / 39916800, 1.0f / 3628800, 1.0f / 362880, 1.0f / 40320, 1.0f / 5040, 1.0f / 720,
-                                           1.0f / 120,      1.0f / 24,      1.0f / 6,      0.5f,         1.0f};
+  constexpr float inverse_factorial[11] = {1.0f / 39916800, 1.0f / 3628800, 1.0f / 362880, 1.0f / 40320,
+                                           1.0f / 5040,     1.0f / 720,     1.0f / 120,    1.0f / 24,
+                                           1.0f / 6,        0.5f,           1.0f};
   T sum = T(inverse_factorial[0]);
   for (int i = 1; i < 11; ++i) sum = sum * x + T(inverse_factorial[i]);
   return sum * x;
@@ -54,7 +55,8 @@ template <class T> LOAM_FN Sym3<T> expm1_traceless(const Sym3<T> &X) {
   const Sym3<T> X2 = square(X);
   const T x2 = T(-0.5f) * trace(X2), x3 = determinant(X);
   // Horner over the powers: (c0, c1, c2) <- coefficient + X * (c0, c1, c2)
-  constexpr float inverse_factorial[8] = {1.0f / 40320, 1.0f / 5040, 1.0f / 720, 1.0f / 120, 1.0f / 24, 1.0f / 6, 0.5f, 1.0f};
+  constexpr float inverse_factorial[8] = {1.0f / 40320, 1.0f / 5040, 1.0f / 720, 1.0f / 120,
+                                          1.0f / 24,    1.0f / 6,    0.5f,       1.0f};
   T c0 = T(inverse_factorial[0]), c1 = T(0.0f), c2 = T(0.0f);
   for (int i = 1; i < 8; ++i) {
     const T n0 = c2 * x3 + T(inverse_factorial[i]), n1 = c0 - c2 * x2;
@@ -158,7 +160,7 @@ template <class T, class Mask> LOAM_FN HenckyStrain<T> hencky_strain(Sym3<T> &S,
     auto moved = eigen.values[0] < least;
     for (int k = 0; k < 3; ++k) {
       clamped[k] = minimum(maximum(eigen.values[k], least), most);
-      moved = either(moved, either(eigen.values[k] < least, eigen.values[k] > most));
+      moved = either(moved, either(eigen.values[k]<least, eigen.values[k]> most));
       logarithm[k] = half * log_by_roots(one + clamped[k]);
     }
     moved = both(moved, outside);

@@ -11,9 +11,7 @@ struct alignas(16) Row {
   float x, y, z, w;
 };
 
-template <class T> struct Vec3 {
-  T x, y, z;
-};
+template <class T> struct Vec3 { T x, y, z; };
 
 template <class T> struct Vec4 {
   T x, y, z, w;

@@ -27,10 +27,12 @@ VonMises make_von_mises(const loam_material_def &def, const Moduli &m) {
 }
 
 DruckerPrager make_drucker_prager(const loam_material_def &def, const Moduli &m) {
-  const double sine = std::sin(static_cast<double>(def.friction_angle)), cosine = std::cos(static_cast<double>(def.friction_angle));
+  const double sine = std::sin(static_cast<double>(def.friction_angle)),
+               cosine = std::cos(static_cast<double>(def.friction_angle));
   const double alpha = std::sqrt(2.0 / 3.0) * 2 * sine / (3 - sine), slope = alpha * 3 * m.bulk / (2 * m.mu);
   // slope * tip with tip = c cot(phi) / K stays finite as phi goes to 0
-  const double cohesive = std::sqrt(2.0 / 3.0) * 2 * cosine / (3 - sine) * 3 * static_cast<double>(def.cohesion) / (2 * m.mu);
+  const double cohesive =
+      std::sqrt(2.0 / 3.0) * 2 * cosine / (3 - sine) * 3 * static_cast<double>(def.cohesion) / (2 * m.mu);
   const double tip = sine > 1e-6 ? cohesive / slope : (cohesive > 0 ? 1.0 : 0.0);
   return {lame_of(m), static_cast<float>(slope), static_cast<float>(cohesive), static_cast<float>(std::fmin(tip, 1.0))};
 }
@@ -84,9 +86,12 @@ void check_material(const loam_material_def &def) {
 LawVariant make_law(const loam_material_def &def) {
   const Moduli m = moduli_of(def);
   switch (def.law) {
-  case LOAM_LAW_ELASTIC: return Elastic{lame_of(m)};
-  case LOAM_LAW_VON_MISES: return make_von_mises(def, m);
-  default: return make_drucker_prager(def, m);
+  case LOAM_LAW_ELASTIC:
+    return Elastic{lame_of(m)};
+  case LOAM_LAW_VON_MISES:
+    return make_von_mises(def, m);
+  default:
+    return make_drucker_prager(def, m);
   }
 }
 

@@ -16,8 +16,7 @@ public:
   // The id that the next add() will give. Throws Error CAPACITY if there is no room.
   std::uint64_t next_id() const {
     const std::size_t index = free_slot();
-    if (index == most_)
-      throw Error(LOAM_ERROR_CAPACITY, format("a world holds at most %zu %ss", most_, kind_));
+    if (index == most_) throw Error(LOAM_ERROR_CAPACITY, format("a world holds at most %zu %ss", most_, kind_));
     const std::uint16_t generation = index < slots_.size() ? slots_[index].generation : 1;
     return make_id(index, generation);
   }

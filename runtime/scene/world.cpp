@@ -30,15 +30,18 @@ Pose make_pose(const float position[3], const float rotation[4]) {
   double norm = 0;
   for (int k = 0; k < 4; ++k) {
     if (!(std::abs(static_cast<double>(rotation[k])) <= 1e6))
-      throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("rotation[%d] is %g; it must be finite", k, static_cast<double>(rotation[k])));
+      throw Error(LOAM_ERROR_INVALID_ARGUMENT,
+                  format("rotation[%d] is %g; it must be finite", k, static_cast<double>(rotation[k])));
     norm += static_cast<double>(rotation[k]) * static_cast<double>(rotation[k]);
   }
   norm = std::sqrt(norm);
   if (!(norm > 1e-6)) throw Error(LOAM_ERROR_INVALID_ARGUMENT, "rotation is a quaternion of length 0");
   Pose pose;
   pose.position = {position[0], position[1], position[2]};
-  pose.rotation = {static_cast<float>(static_cast<double>(rotation[0]) / norm), static_cast<float>(static_cast<double>(rotation[1]) / norm),
-                   static_cast<float>(static_cast<double>(rotation[2]) / norm), static_cast<float>(static_cast<double>(rotation[3]) / norm)};
+  pose.rotation = {static_cast<float>(static_cast<double>(rotation[0]) / norm),
+                   static_cast<float>(static_cast<double>(rotation[1]) / norm),
+                   static_cast<float>(static_cast<double>(rotation[2]) / norm),
+                   static_cast<float>(static_cast<double>(rotation[3]) / norm)};
   return pose;
 }
 
@@ -87,8 +90,9 @@ loam_world::loam_world(const loam_world_def &def)
   execution_ = {def.allocator, def.job_system, def.thread_count, def.instruction_set};
   if (execution_.instruction_set == LOAM_INSTRUCTION_SET_AUTO) execution_.instruction_set = best_instruction_set();
   if (kernel_table(execution_.instruction_set) == nullptr)
-    throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("instruction_set is %s (%u), which this machine does not have",
-                                                    instruction_set_name(execution_.instruction_set), execution_.instruction_set));
+    throw Error(LOAM_ERROR_INVALID_ARGUMENT,
+                format("instruction_set is %s (%u), which this machine does not have",
+                       instruction_set_name(execution_.instruction_set), execution_.instruction_set));
   const SolverSettings settings = {def.kernel_radius,
                                    def.gradient_cutoff,
                                    def.minimum_distance,
@@ -176,7 +180,8 @@ loam_material_id loam_world::create_material(const loam_material_def &def) {
 void loam_world::destroy_material(loam_material_id id) {
   const Material &m = materials_.at(id, "material");
   if (m.particles > 0)
-    throw Error(LOAM_ERROR_IN_USE, format("material \"%s\" has %llu particles", m.def.name, static_cast<unsigned long long>(m.particles)));
+    throw Error(LOAM_ERROR_IN_USE,
+                format("material \"%s\" has %llu particles", m.def.name, static_cast<unsigned long long>(m.particles)));
   materials_.remove(id, "material");
   send_materials();
 }
@@ -224,14 +229,16 @@ void loam_world::add_particles(loam_material_id material, const char *argument, 
   Material &m = materials_.at(material, argument);
   const std::uint64_t have = backend_->particle_count(), want = have + particles.count;
   if (want > def_.particle_capacity)
-    throw Error(LOAM_ERROR_CAPACITY, format("%llu particles would be needed; particle_capacity is %llu", static_cast<unsigned long long>(want),
-                                            static_cast<unsigned long long>(def_.particle_capacity)));
+    throw Error(LOAM_ERROR_CAPACITY,
+                format("%llu particles would be needed; particle_capacity is %llu", static_cast<unsigned long long>(want),
+                       static_cast<unsigned long long>(def_.particle_capacity)));
   particles.material = static_cast<std::uint32_t>(material & 0xffffffffu);
   particles.first_id = static_cast<std::uint32_t>(have);
   particles.inverse_mass = pinned ? 0.0f : 1.0f / (m.def.density * particles.volume);
   if (!pinned && !(particles.inverse_mass > 0.0f && particles.inverse_mass <= 1e30f))
-    throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("a particle of %g m^3 and %g kg/m^3 has a mass that single precision cannot hold",
-                                                    static_cast<double>(particles.volume), static_cast<double>(m.def.density)));
+    throw Error(LOAM_ERROR_INVALID_ARGUMENT,
+                format("a particle of %g m^3 and %g kg/m^3 has a mass that single precision cannot hold",
+                       static_cast<double>(particles.volume), static_cast<double>(m.def.density)));
   if (particles.count == 0) return;
   backend_->add_particles(particles);
   const bool first = m.particles == 0;
@@ -265,11 +272,11 @@ std::uint32_t loam_world::add(const loam_particles_def &def) {
     const char axis = "xyz"[i % 3];
     if (!(std::abs(static_cast<double>(def.positions[i])) <= 1e6 * r))
       throw Error(LOAM_ERROR_INVALID_ARGUMENT,
-                  format("positions[%llu].%c is %g; it must be finite and within 1e6 kernel radii (%g m) of the origin", part, axis,
-                         static_cast<double>(def.positions[i]), 1e6 * r));
+                  format("positions[%llu].%c is %g; it must be finite and within 1e6 kernel radii (%g m) of the origin",
+                         part, axis, static_cast<double>(def.positions[i]), 1e6 * r));
     if (def.velocities != nullptr && !(std::abs(static_cast<double>(def.velocities[i])) <= 1e9))
-      throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("velocities[%llu].%c is %g; it must be finite and at most 1e9", part, axis,
-                                                      static_cast<double>(def.velocities[i])));
+      throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("velocities[%llu].%c is %g; it must be finite and at most 1e9", part,
+                                                      axis, static_cast<double>(def.velocities[i])));
   }
   NewParticles particles = {};
   particles.volume = def.volume != 0.0f ? def.volume : static_cast<float>(r * r * r);

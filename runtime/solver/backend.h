@@ -59,9 +59,9 @@ struct NewParticles {
   std::uint32_t material;
   std::uint32_t first_id;
   float volume, inverse_mass;
-  const float *positions; // 3 each
+  const float *positions;  // 3 each
   const float *velocities; // 3 each, or null
-  Vec3<float> velocity; // where `velocities` is null
+  Vec3<float> velocity;    // where `velocities` is null
   std::uint64_t count;
 };
 

@@ -60,9 +60,9 @@ private:
   };
 
   ParticleStorage make_storage() {
-    return {executor_.template array<Row>(),   executor_.template array<Row>(),
-            executor_.template array<float>(), executor_.template array<float>(),
-            executor_.template array<float>(), executor_.template array<float>(),
+    return {executor_.template array<Row>(),           executor_.template array<Row>(),
+            executor_.template array<float>(),         executor_.template array<float>(),
+            executor_.template array<float>(),         executor_.template array<float>(),
             executor_.template array<std::uint32_t>(), executor_.template array<std::uint32_t>()};
   }
   void reserve_storage(ParticleStorage &storage, std::size_t rows);
@@ -132,8 +132,10 @@ Solver<Executor>::Solver(const SolverSettings &settings, const ExecutionSettings
       y_(executor_.template array<float>()), z_(executor_.template array<float>()),
       cell_starts_(executor_.template array<int>()), neighbour_counts_(executor_.template array<int>()),
       close_counts_(executor_.template array<int>()), counters_(executor_.template array<int>()),
-      corrections_(executor_.template array<float>()), densities_(executor_.template array<float>()),
-      jacobi_rows_{executor_.template array<Row>(), executor_.template array<Row>(), executor_.template array<Row>()},
+      corrections_(executor_.template array<float>()),
+      densities_(executor_.template array<float>()), jacobi_rows_{executor_.template array<Row>(),
+                                                                  executor_.template array<Row>(),
+                                                                  executor_.template array<Row>()},
       collider_views_(executor_.template array<ColliderView>()), contacts_(executor_.template array<Contact>()) {
   const auto capacity = static_cast<std::size_t>(settings_.particle_capacity);
   spare_row_ = capacity;
@@ -152,7 +154,8 @@ template <class Executor> void Solver<Executor>::reserve_storage(ParticleStorage
   // Growing keeps the particles: only the spare rows at the end become more.
   const auto grow = [&](auto &array, std::size_t per_row) {
     if (array.capacity() >= rows * per_row) return;
-    std::remove_reference_t<decltype(array)> fresh = executor_.template array<std::remove_pointer_t<decltype(array.data())>>();
+    std::remove_reference_t<decltype(array)> fresh =
+        executor_.template array<std::remove_pointer_t<decltype(array.data())>>();
     fresh.reserve(rows * per_row);
     if (array.capacity() > 0) executor_.copy(fresh.data(), array.data(), array.capacity());
     array.swap(fresh);
@@ -202,7 +205,7 @@ template <class Executor> void Solver<Executor>::set_materials(const std::vector
 }
 
 template <class Executor> int Solver<Executor>::add_mesh(const BoundingVolumeHierarchy &mesh) {
-  Mesh stored = {executor_.template array<BvhNode>(), executor_.template array<BvhTriangle>(),
+  Mesh stored = {executor_.template array<BvhNode>(),     executor_.template array<BvhTriangle>(),
                  executor_.template array<BvhFeatures>(), executor_.template array<Vec3<float>>(),
                  static_cast<int>(mesh.triangles.size()), true};
   copy_in(stored.nodes, mesh.nodes);

@@ -20,8 +20,9 @@ template <class... A, class... B, class... Rest> struct Concatenate<TypeList<A..
   using Type = typename Concatenate<TypeList<A..., B...>, Rest...>::Type;
 };
 
-template <class Law> using StagesOfLaw = TypeList<SolveInelastic<Law, ScalarMultiplier>, JacobiImpulse<Law, ScalarMultiplier>,
-                                                  UpdateStrain<Law>, MeasureConstraint<Law, ScalarMultiplier>>;
+template <class Law>
+using StagesOfLaw = TypeList<SolveInelastic<Law, ScalarMultiplier>, JacobiImpulse<Law, ScalarMultiplier>, UpdateStrain<Law>,
+                             MeasureConstraint<Law, ScalarMultiplier>>;
 
 template <class List> struct StagesOfLaws;
 template <class... L> struct StagesOfLaws<TypeList<L...>> { using Type = typename Concatenate<StagesOfLaw<L>...>::Type; };

@@ -104,13 +104,14 @@ template <class Executor> void Solver<Executor>::search_neighbours() {
   const auto pairs = static_cast<std::uint64_t>(ex.reduce(count_, SumCounts{neighbour_counts_.data()}));
   statistics_.pairs_peak = std::max(statistics_.pairs_peak, pairs);
   if (settings_.pair_capacity != 0 && pairs > settings_.pair_capacity)
-    throw Error(LOAM_ERROR_CAPACITY, format("the particles have %llu neighbour pairs; pair_capacity is %llu and would have to be that many",
-                                            static_cast<unsigned long long>(pairs),
-                                            static_cast<unsigned long long>(settings_.pair_capacity)));
+    throw Error(LOAM_ERROR_CAPACITY,
+                format("the particles have %llu neighbour pairs; pair_capacity is %llu and would have to be that many",
+                       static_cast<unsigned long long>(pairs), static_cast<unsigned long long>(settings_.pair_capacity)));
   if (pairs > 1500000000ull)
-    throw Error(LOAM_ERROR_CAPACITY, format("the particles have %llu neighbour pairs, more than the 1500000000 that a world can hold: are many "
-                                            "of them in one place, or is kernel_radius too large?",
-                                            static_cast<unsigned long long>(pairs)));
+    throw Error(LOAM_ERROR_CAPACITY,
+                format("the particles have %llu neighbour pairs, more than the 1500000000 that a world can hold: are many "
+                       "of them in one place, or is kernel_radius too large?",
+                       static_cast<unsigned long long>(pairs)));
   pairs_ = pairs;
   lap(schedule_.search, particles());
   ex.arrange(table_);
@@ -122,7 +123,8 @@ template <class Executor> void Solver<Executor>::search_neighbours() {
                        ComputeGradients{now_.positions.data(), now_.velocities.data(), now_.strains.data(),
                                         histories_in_use_ ? now_.histories.data() : nullptr, now_.rest_volumes.data(),
                                         neighbour_counts_.data(), close_counts_.data(),
-                                        settings_.jacobi ? corrections_.data() : nullptr, kernel_, settings_.gradient_cutoff});
+                                        settings_.jacobi ? corrections_.data() : nullptr, kernel_,
+                                        settings_.gradient_cutoff});
   lap(schedule_.gradients, pairs_);
 }
 
@@ -213,10 +215,11 @@ template <class Executor> void Solver<Executor>::measure(const Vec3<float> &grav
 
   double support = 0;
   if (contact_count_ > 0)
-    support = executor_.reduce(contact_count_, ContactMoment{contacts_.data(), now_.positions.data(), now_.velocities.data(), up_}) /
+    support = executor_.reduce(contact_count_,
+                               ContactMoment{contacts_.data(), now_.positions.data(), now_.velocities.data(), up_}) /
               static_cast<double>(h_);
-  const MotionMeasure::Value motion = executor_.reduce(
-      count_, MotionMeasure{now_.positions.data(), now_.velocities.data(), now_.strains.data(), gravity});
+  const MotionMeasure::Value motion =
+      executor_.reduce(count_, MotionMeasure{now_.positions.data(), now_.velocities.data(), now_.strains.data(), gravity});
   const double weight = motion.weight_moment - support;
   const double stress = sums.term[ConstraintTerms::pair_moment] - sums.term[ConstraintTerms::stress_moment];
   virial_moment_ = length(gravity) > 0.0f && contact_count_ > 0 && std::abs(weight) > 0 ? stress / weight : 0;

@@ -47,8 +47,8 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
     });
     lap(stage, particles());
   }
-  ex.for_each(count_, Advance{now_.positions.data(), now_.velocities.data(), now_.log_volumes.data(),
-                              now_.rest_volumes.data(), h_});
+  ex.for_each(count_,
+              Advance{now_.positions.data(), now_.velocities.data(), now_.log_volumes.data(), now_.rest_volumes.data(), h_});
   lap(schedule_.advance, particles());
 }
 
@@ -99,8 +99,8 @@ template <class Executor> void Solver<Executor>::solve_at_once() {
     with_law(m, [&](const auto &law_of_material, StrainLimit limit_of_material) {
       with_plasticity(settings_.semi_implicit, law_of_material, limit_of_material, [&](const auto &law, StrainLimit limit) {
         using Law = std::remove_cvref_t<decltype(law)>;
-        executor_.for_each_particle_of(
-            m, velocities, JacobiImpulse<Law, ScalarMultiplier>{law, limit, h_, corrections_.data(), rows});
+        executor_.for_each_particle_of(m, velocities,
+                                       JacobiImpulse<Law, ScalarMultiplier>{law, limit, h_, corrections_.data(), rows});
       });
     });
     lap(stage, particles());

@@ -84,7 +84,7 @@ struct FindContacts {
       if (colliders[i].kind == LOAM_COLLIDER_PLANE) {
         find_plane(i, x, list, clearance);
       } else {
-        find_mesh(i, x, list, clearance);
+        find_mesh(i, x, expected_reach(particle), list, clearance);
       }
     }
     if (list.count == 0) return;
@@ -109,6 +109,12 @@ private:
            (collider.end.position - collider.start.position);
   }
 
+  // Planes are collected as far as the particle is likely to go in the substep, given its speed; how far the collider is at all is found
+  // out to the full reach, and a particle that goes further than expected is the sweep's.
+  LOAM_FN float expected_reach(int particle) const {
+    return minimum(reach, 2.0f * substep * length(xyz(velocities[particle])) + 0.25f * reach);
+  }
+
   // The half space of a contact point in the collider's frame. `shift` is where the collider would carry the particle.
   LOAM_FN ContactPlane plane_at(const ColliderView &collider, Vec3<float> point, Vec3<float> normal, float distance,
                                 Vec3<float> shift) const {
@@ -131,28 +137,30 @@ private:
     if (plane.gap < reach) list.insert(plane, index);
   }
 
-  LOAM_FN void find_mesh(int index, Vec3<float> x, PlaneList &list, float &clearance) const {
+  LOAM_FN void find_mesh(int index, Vec3<float> x, float expected, PlaneList &list, float &clearance) const {
     const ColliderView &collider = colliders[index];
     const Vec3<float> local = to_local(collider.start, x);
     const Vec3<float> shift = carried(collider, local);
-    const float radius = stand_off + reach + length(shift);
-    const float radius_squared = radius * radius;
+    const float near = stand_off + expected + length(shift), far = stand_off + reach + length(shift);
+    const float near_squared = near * near;
 
-    ClosestPoint<float> nearest = {{0.0f, 0.0f, 0.0f}, radius_squared, -1};
+    ClosestPoint<float> nearest = {{0.0f, 0.0f, 0.0f}, far * far, -1};
     int nearest_triangle = 0;
     bool nearest_is_listed = false;
+    float radius_squared = far * far; // shrinks to the nearest point so far, but not below `near`
     BallQuery query(collider.nodes, local);
     for (int i = query.next(radius_squared); i >= 0; i = query.next(radius_squared)) {
       const BvhTriangle &t = collider.triangles[i];
       const ClosestPoint<float> closest = closest_point_on_triangle(t.a - local, t.b - local, t.c - local, t.normal);
       if (!(closest.distance_squared < radius_squared)) continue;
-      const bool minimum_here = is_minimum(collider, i, closest, local);
+      const bool listed = closest.distance_squared < near_squared && is_minimum(collider, i, closest, local);
       if (closest.distance_squared < nearest.distance_squared) {
         nearest = closest;
         nearest_triangle = i;
-        nearest_is_listed = minimum_here;
+        nearest_is_listed = listed;
+        radius_squared = maximum(near_squared, closest.distance_squared);
       }
-      if (minimum_here) add(index, i, closest, local, shift, false, list);
+      if (listed) add(index, i, closest, local, shift, false, list);
     }
     if (nearest.feature < 0) return;
     clearance = minimum(clearance, square_root(nearest.distance_squared) - length(shift));

@@ -8,7 +8,8 @@ namespace loam {
 // H = h grad v = h (sum_b v_b G_b^T - v_p s^T), with G_b = V_b L_p grad W_b (equation 6 of the XPBI paper, corrected kernel gradients).
 template <class Team>
 LOAM_FN Mat3<typename Team::Real> velocity_gradient_step(Team &team, typename Team::Item p, float substep,
-                                                         Vec3<typename Team::Real> own, Vec3<typename Team::Real> gradient_sum) {
+                                                         Vec3<typename Team::Real> own,
+                                                         Vec3<typename Team::Real> gradient_sum) {
   using Lane = typename Team::Lane;
   using Real = typename Team::Real;
   Mat3<Lane> sum = zero_matrix<Lane>();

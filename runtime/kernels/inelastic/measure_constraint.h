@@ -25,7 +25,8 @@ template <class Law, class Multiplier> struct MeasureConstraint {
     const ConstraintResponse<Real> response = respond(law, limit, c.trial, c.H, c.history);
     const Real residual = response.value + c.inverse_volume / (h * h) * lambda;
     team.set_own_value(p, terms, ConstraintTerms::term_count, ConstraintTerms::residual_squared, residual * residual);
-    team.set_own_value(p, terms, ConstraintTerms::term_count, ConstraintTerms::value_squared, response.value * response.value);
+    team.set_own_value(p, terms, ConstraintTerms::term_count, ConstraintTerms::value_squared,
+                       response.value * response.value);
 
     // V0 tau : up up^T, tau from the strain at the start of the substep
     Sym3<Real> S = team.symmetric(p, Record::strain);

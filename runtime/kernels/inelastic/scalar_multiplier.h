@@ -48,7 +48,8 @@ template <class T> LOAM_FN Mat3<T> inverse_transpose(const Mat3<T> &H) {
 }
 
 template <class Law, class Real>
-LOAM_FN ConstraintResponse<Real> respond(const Law &law, StrainLimit limit, Sym3<Real> trial, const Mat3<Real> &H, Real history) {
+LOAM_FN ConstraintResponse<Real> respond(const Law &law, StrainLimit limit, Sym3<Real> trial, const Mat3<Real> &H,
+                                         Real history) {
   const Real third(1.0f / 3.0f), zero(0.0f), one(1.0f);
   auto limited = zero > zero;
   const HenckyStrain<Real> strain = hencky_strain(trial, limit, limited);
@@ -86,8 +87,7 @@ struct ScalarMultiplier {
     const Real compliance = c.inverse_volume / (h * h);
     Real denominator = compliance;
     for (int i = 0; i < 3; ++i)
-      denominator =
-          denominator + (A.m[i][0] * AM.m[i][0] + (A.m[i][1] * AM.m[i][1] + A.m[i][2] * AM.m[i][2]));
+      denominator = denominator + (A.m[i][0] * AM.m[i][0] + (A.m[i][1] * AM.m[i][1] + A.m[i][2] * AM.m[i][2]));
     const Vec3<Real> own = A * c.gradient_sum;
     denominator = denominator + c.inverse_mass * dot(own, own);
     const Real zero(0.0f);

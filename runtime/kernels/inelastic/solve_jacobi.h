@@ -64,7 +64,8 @@ struct JacobiApply {
       sum = sum + ((g.x * a) + ((g.y * b) + (g.z * c)));
     }
     const Vec3<Real> gathered = (own.w * x.w) * team.sum(sum);
-    const Vec3<Real> change = {team.own_row(p, rows.column[0]).w, team.own_row(p, rows.column[1]).w, team.own_row(p, rows.column[2]).w};
+    const Vec3<Real> change = {team.own_row(p, rows.column[0]).w, team.own_row(p, rows.column[1]).w,
+                               team.own_row(p, rows.column[2]).w};
     const Vec3<Real> u = own.xyz() + change + gathered;
     team.set_velocity(p, {u.x, u.y, u.z, own.w});
   }

@@ -46,7 +46,7 @@ template <class Law> struct UpdateStrain {
       const Real a = expm1_series(Real(2.0f) * third * mapped.trace);
       const Sym3<Real> E = expm1_traceless((Real(2.0f) * mapped.scale) * strain.deviator);
       const Sym3<Real> projected = add_diagonal((one + a) * E, a);
-      const auto moved = either(mapped.scale < one, either(mapped.trace < strain.trace, mapped.trace > strain.trace));
+      const auto moved = either(mapped.scale < one, either(mapped.trace<strain.trace, mapped.trace> strain.trace));
       S = select(either(moved, limited), projected, S);
       // Granular matter with too few neighbours is loose: its neighbourhood cannot tell a strain.
       const auto alone = team.own_count(p, neighbour_counts) < Real(3.0f);

@@ -27,7 +27,7 @@ struct SmoothVelocities {
       const Vec3<Lane> d = other.xyz() - center;
       const Lane weights = own_w + u.w;
       const auto movable = weights > zero;
-      const Lane share = select(movable, own_w / select(movable, weights, one), zero); // m_b / (m_p + m_b)
+      const Lane share = select(movable, own_w / select(movable, weights, one), zero);             // m_b / (m_p + m_b)
       const Lane weight = kernel.value(square_root(dot(d, d))) * ((own_volume + other.w) * share); // mean volume times 2
       sum = sum + weight * (u.xyz() - v);
     }

@@ -24,7 +24,8 @@ struct DruckerPrager {
     const T limit = T(cohesive_deviator) - T(slope) * corrected;
     const T scale = select(deviator_norm > limit, limit / maximum(deviator_norm, T(1e-30f)), T(1.0f));
     const auto beyond_tip = corrected >= T(tip);
-    return {select(beyond_tip, T(tip), corrected), select(beyond_tip, zero, scale), select(beyond_tip, corrected - T(tip), zero)};
+    return {select(beyond_tip, T(tip), corrected), select(beyond_tip, zero, scale),
+            select(beyond_tip, corrected - T(tip), zero)};
   }
 };
 

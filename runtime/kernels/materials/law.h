@@ -19,8 +19,6 @@ struct LameParameters {
 };
 
 // The projected strain: (trace / 3) I + scale * (trial deviator), and the history at the end of the substep.
-template <class T> struct Mapped {
-  T trace, scale, history;
-};
+template <class T> struct Mapped { T trace, scale, history; };
 
 } // namespace loam

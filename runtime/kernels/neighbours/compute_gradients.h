@@ -33,7 +33,7 @@ template <class T> LOAM_FN Sym3<T> pseudo_inverse(const Sym3<T> &A, float cutoff
 }
 
 struct ComputeGradients {
-  const Row *positions; // x, y, z, true volume
+  const Row *positions;  // x, y, z, true volume
   const Row *velocities; // fourth component: inverse mass
   const float *strains;
   const float *histories; // may be null: no law of this world has a history
