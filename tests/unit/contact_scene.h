@@ -21,7 +21,8 @@ struct ContactScene {
   float radius = 0.01f; // r
   float substep = 5e-4f;
   int iterations = 5;
-  bool solve = true; // false: the sweep alone has to hold
+  bool solve = true;      // false: the sweep alone has to hold
+  bool backwards = false; // the particles are visited in reverse
   Vec3<float> gravity{0, -9.81f, 0};
   std::vector<Row> positions, velocities;
   std::vector<ColliderView> colliders;
@@ -59,7 +60,8 @@ struct ContactScene {
     const FindContacts kernel{
         positions.data(), velocities.data(), colliders.data(),     int(colliders.size()), substep, stand_off(),
         radius,           contacts.data(),   int(contacts.size()), &contact_count};
-    for (std::size_t i = 0; i < positions.size(); ++i) kernel(int(i));
+    const int count = int(positions.size());
+    for (int i = 0; i < count; ++i) kernel(backwards ? count - 1 - i : i);
   }
 
   void step() {
