@@ -73,7 +73,11 @@ public:
 
   // ---------------------------------------------------------------------------------------------- neighbours ---
 
-  void count_neighbours(const CellTable &table, const CountNeighbours &stage) { over_candidates(table, stage); }
+  void count_neighbours(const CellTable &table, const CountNeighbours &stage) {
+    const CpuCandidates views = candidates(table);
+    const auto launch = table_->candidate[IndexOf<CountNeighbours, CandidateStages>::value];
+    in_chunks(table.particle_count, 512, [&](int first, int last) { launch(&stage, views, first, last); });
+  }
 
   // Orders the visits and makes room for the lists. Throws Error before anything of the lists has changed.
   void arrange(const CellTable &table) {
@@ -82,7 +86,16 @@ public:
   }
   void fill_neighbours(const CellTable &table, const FillNeighbours &stage) {
     order_.fill_idle_lanes(workers_);
-    over_candidates(table, stage);
+    const CpuCandidates views = candidates(table);
+    const auto launch = table_->candidate[IndexOf<FillNeighbours, CandidateStages>::value];
+    if (table.material_count > 1) { // a run may hold particles of several groups
+      in_chunks(table.particle_count, 512, [&](int first, int last) { launch(&stage, views, first, last); });
+      return;
+    }
+    in_chunks(order_.group_count(), 1, [&](int first_group, int last_group) {
+      for (int group = first_group; group < last_group; ++group)
+        order_.for_each_run_of_group(group, [&](int first, int last) { launch(&stage, views, first, last); });
+    });
   }
   std::size_t list_bytes() const { return order_.list_bytes(); }
   std::size_t record_bytes() const { return order_.record_bytes(); }
@@ -139,13 +152,10 @@ private:
     in_chunks(last_batch - first_batch, 16,
               [&](int first, int last) { launch(&stage, pairs, first_batch + first, first_batch + last); });
   }
-  template <class Stage> void over_candidates(const CellTable &table, const Stage &stage) {
-    const CpuCandidates views = {
-        table.x,        table.y,          table.z,
-        table.keys,     table.starts,     {table.grid.size[0], table.grid.size[1], table.grid.size[2]},
-        order_.slots(), order_.offsets(), order_.indices()};
-    const auto launch = table_->candidate[IndexOf<Stage, CandidateStages>::value];
-    in_chunks(table.particle_count, 512, [&](int first, int last) { launch(&stage, views, first, last); });
+  CpuCandidates candidates(const CellTable &table) {
+    return {table.x,        table.y,          table.z,
+            table.keys,     table.starts,     {table.grid.size[0], table.grid.size[1], table.grid.size[2]},
+            order_.slots(), order_.offsets(), order_.indices()};
   }
 
   HostAllocator allocator_;

@@ -15,9 +15,7 @@ struct TeamOverCandidates {
   static constexpr int W = Pack::width;
 
   CpuCandidates d;
-  Pack x, y, z;      // of the particle
-  Pack lane_numbers; // 0, 1, 2 ...
-  Pack lane_parity;  // 0, 1, 0 ...
+  Pack x, y, z; // of the particle
   int particle = 0;
 
   // A run of candidates, W at a time. Up to 18 of them: nine columns of cells, each in one piece, or two where the torus' seam cuts it.
@@ -51,15 +49,7 @@ struct TeamOverCandidates {
   Runs runs;
   int cell = -1; // that `runs` belongs to
 
-  LOAM_FN explicit TeamOverCandidates(const CpuCandidates &views) : d(views) {
-    alignas(64) float numbers[W], parity[W];
-    for (int l = 0; l < W; ++l) {
-      numbers[l] = static_cast<float>(l);
-      parity[l] = static_cast<float>(l & 1);
-    }
-    lane_numbers = Pack::load(numbers);
-    lane_parity = Pack::load(parity);
-  }
+  LOAM_FN explicit TeamOverCandidates(const CpuCandidates &views) : d(views) {}
 
   LOAM_FN void add_run(int from_cell, int to_cell) {
     const int first = d.starts[from_cell], last = d.starts[to_cell];
@@ -100,18 +90,21 @@ struct TeamOverCandidates {
                dz = Pack::load_unaligned(d.z + k.base) - z;
     return dx * dx + (dy * dy + dz * dz);
   }
-  // Candidates of the run that are not the particle itself. Differences of indices are exact or at least keep their sign.
-  LOAM_FN Mask other(const Candidate &k) const {
-    const Pack left(static_cast<float>(k.last - k.base)), self(static_cast<float>(particle - k.base));
-    return both(lane_numbers < left, either(lane_numbers<self, lane_numbers> self));
+  LOAM_FN unsigned bits_below(Pack squared, float limit) const { return mask_bits(squared < Pack(limit)); }
+  // Candidates of the run that are not the particle itself.
+  LOAM_FN unsigned other_bits(const Candidate &k) const {
+    const unsigned left = static_cast<unsigned>(k.last - k.base), self = static_cast<unsigned>(particle - k.base);
+    const unsigned in_run = left >= 32 ? ~0u : (1u << left) - 1u;
+    return self < 32 ? in_run & ~(1u << self) : in_run;
   }
-  LOAM_FN Mask owned(const Candidate &k) const {
-    const Pack self(static_cast<float>(particle - k.base)), half(0.5f);
-    const bool odd = ((k.base + particle) & 1) != 0;
-    const Mask even_sum = odd ? lane_parity > half : lane_parity < half;
-    return either(both(even_sum, lane_numbers > self), both(opposite(even_sum), lane_numbers < self));
+  // Candidates whose close pair with the particle this particle owns.
+  LOAM_FN unsigned owned_bits(const Candidate &k) const {
+    const int self = particle - k.base;
+    const unsigned above = self < 0 ? ~0u : self >= 31 ? 0u : ~0u << (self + 1);
+    const unsigned even_sum = ((k.base ^ particle) & 1) != 0 ? 0xaaaaaaaau : 0x55555555u;
+    return (even_sum & above) | ~(even_sum | above);
   }
-  LOAM_FN int count(Mask m) const { return loam::LOAM_INSTRUCTION_SET::count(m); }
+  LOAM_FN int count(unsigned bits) const { return __builtin_popcount(bits); }
   LOAM_FN void store(int *values, int i, int value) const { values[i] = value; }
 
   // filling
@@ -123,13 +116,14 @@ struct TeamOverCandidates {
     list_end = d.indices + static_cast<long>(d.offsets[batch + 1]) * W + lane;
     (void)total;
   }
-  LOAM_FN void append(const Candidate &k, Mask near, Mask close) {
-    const unsigned close_bits = mask_bits(close);
-    for (unsigned rest = mask_bits(near); rest != 0; rest &= rest - 1) {
-      const int lane = __builtin_ctz(rest);
-      int *&end = (close_bits >> lane & 1u) != 0 ? close_end : far_end;
-      *end = k.base + lane;
-      end += W;
+  LOAM_FN void append(const Candidate &k, unsigned near, unsigned close) {
+    for (unsigned rest = near & ~close; rest != 0; rest &= rest - 1) {
+      *far_end = k.base + __builtin_ctz(rest);
+      far_end += W;
+    }
+    for (unsigned rest = close; rest != 0; rest &= rest - 1) {
+      *close_end = k.base + __builtin_ctz(rest);
+      close_end += W;
     }
   }
   LOAM_FN void close_list(int i) {

@@ -21,44 +21,53 @@ struct TeamOverCells {
 
   CpuPairs d;
 
-  struct Neighbour {
+  // A place in the lists. Walking on, it prefetches what will be read: gradients too if the stage uses them.
+  template <bool WithGradients> struct Neighbour {
     int *index;
     float *gradient;
     LOAM_FN Neighbour operator*() const { return *this; }
     LOAM_FN bool operator!=(const Neighbour &end) const { return index != end.index; }
     LOAM_FN void operator++() {
-      for (int i = 0; i < 3 * W; i += 16) __builtin_prefetch(gradient + 3 * W * prefetch_distance + i);
+      if constexpr (WithGradients)
+        for (int i = 0; i < 3 * W; i += 16) __builtin_prefetch(gradient + 3 * W * prefetch_distance + i);
       __builtin_prefetch(index + W * prefetch_distance);
       index += W;
       gradient += 3 * W;
     }
   };
-  struct Range {
-    Neighbour first, last;
-    LOAM_FN Neighbour begin() const { return first; }
-    LOAM_FN Neighbour end() const { return last; }
+  template <bool WithGradients> struct Range {
+    Neighbour<WithGradients> first, last;
+    LOAM_FN Neighbour<WithGradients> begin() const { return first; }
+    LOAM_FN Neighbour<WithGradients> end() const { return last; }
   };
-  LOAM_FN Neighbour at(int step) const {
-    return {d.indices + static_cast<long>(step) * W, d.gradients + static_cast<long>(step) * 3 * W};
+  template <bool WithGradients> LOAM_FN Range<WithGradients> range(long first, long last) const {
+    return {{d.indices + first * W, d.gradients + first * 3 * W}, {d.indices + last * W, d.gradients + last * 3 * W}};
   }
-  LOAM_FN Range neighbours(int b) const { return {at(d.offsets[b]), at(d.offsets[b + 1])}; }
-  LOAM_FN Range close_neighbours(int b) const { return {at(d.offsets[b]), at(d.offsets[b] + d.close_steps[b])}; }
+  LOAM_FN Range<true> neighbours(int b) const { return range<true>(d.offsets[b], d.offsets[b + 1]); }
+  // For stages that do not look at gradients.
+  LOAM_FN Range<false> unweighted_neighbours(int b) const { return range<false>(d.offsets[b], d.offsets[b + 1]); }
+  // Only the close ones, first in the list.
+  LOAM_FN Range<false> close_neighbours(int b) const { return range<false>(d.offsets[b], d.offsets[b] + d.close_steps[b]); }
 
   // of a neighbour
-  LOAM_FN Vec4<Pack> neighbour_velocity(const Neighbour &k) const { return load_rows(d.velocities, k.index); }
-  LOAM_FN void set_neighbour_velocity(const Neighbour &k, const Vec4<Pack> &v) const {
+  template <bool G> LOAM_FN Vec4<Pack> neighbour_velocity(const Neighbour<G> &k) const {
+    return load_rows(d.velocities, k.index);
+  }
+  template <bool G> LOAM_FN void set_neighbour_velocity(const Neighbour<G> &k, const Vec4<Pack> &v) const {
     store_rows(d.velocities, k.index, v);
   }
-  LOAM_FN Vec4<Pack> neighbour_row(const Neighbour &k, const Row *rows) const { return load_rows(rows, k.index); }
-  LOAM_FN Vec3<Pack> gradient(const Neighbour &k) const {
+  template <bool G> LOAM_FN Vec4<Pack> neighbour_row(const Neighbour<G> &k, const Row *rows) const {
+    return load_rows(rows, k.index);
+  }
+  template <bool G> LOAM_FN Vec3<Pack> gradient(const Neighbour<G> &k) const {
     return {Pack::load(k.gradient), Pack::load(k.gradient + W), Pack::load(k.gradient + 2 * W)};
   }
-  LOAM_FN void set_gradient(const Neighbour &k, const Vec3<Pack> &g) const {
+  template <bool G> LOAM_FN void set_gradient(const Neighbour<G> &k, const Vec3<Pack> &g) const {
     g.x.store(k.gradient);
     g.y.store(k.gradient + W);
     g.z.store(k.gradient + 2 * W);
   }
-  LOAM_FN Pack neighbour_count(const Neighbour &k, const int *counts) const {
+  template <bool G> LOAM_FN Pack neighbour_count(const Neighbour<G> &k, const int *counts) const {
     alignas(64) float values[W];
     for (int l = 0; l < W; ++l) values[l] = static_cast<float>(counts[k.index[l]]);
     return Pack::load(values);

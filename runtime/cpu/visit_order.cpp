@@ -25,21 +25,9 @@ std::size_t VisitOrder::order_bytes() const {
 
 namespace {
 
-// A quarter more than asked for, so that small changes of the scene do not take memory each time.
+// An eighth more than asked for, so that small changes of the scene do not take memory each time.
 template <class T> void grow(HostArray<T> &array, std::size_t count) {
-  if (count > array.capacity()) array.reserve(count + count / 4 + 64);
-}
-
-// Calls f(first, last) for each run of particles in a block: its columns of cells along z.
-template <class F> void for_each_run(const CellTable &table, int block, F &&f) {
-  const int w = table.colouring.block_width;
-  const int ny = table.grid.size[1], nz = table.grid.size[2], by = ny / w, bz = nz / w;
-  const int z = block % bz * w, y = block / bz % by * w, x = block / bz / by * w;
-  for (int dx = 0; dx < w; ++dx)
-    for (int dy = 0; dy < w; ++dy) {
-      const int cell = ((x + dx) * ny + y + dy) * nz + z;
-      f(table.starts[cell], table.starts[cell + w]);
-    }
+  if (count > array.capacity()) array.reserve(count + count / 8 + 64);
 }
 
 } // namespace
@@ -155,6 +143,7 @@ void VisitOrder::fill_group(const CellTable &table, int group, int pass_index) {
 }
 
 std::int64_t VisitOrder::arrange(Workers &workers, const CellTable &table) {
+  table_ = table;
   list_entries(table);
   make_groups(table);
   const auto batches = static_cast<std::size_t>(batch_count_);

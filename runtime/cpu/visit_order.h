@@ -34,6 +34,11 @@ public:
   // Points the lanes that have no list of their own at a harmless row.
   void fill_idle_lanes(Workers &workers);
 
+  // Calls f(first, last) for the runs of particles, contiguous in memory, that make up a group, where all particles are of one material. The lists of
+  // a group share cache lines, so whoever fills them does well to go group by group.
+  template <class F> void for_each_run_of_group(int group, F &&f) const;
+  int group_count() const { return group_count_; }
+
   CpuPairs pairs(Row *velocities);
   const int *slots() const { return slots_.data(); }
   const int *offsets() const { return offsets_.data(); }
@@ -58,6 +63,7 @@ private:
   void fill_group(const CellTable &table, int group, int pass_index);
 
   int width_;
+  CellTable table_{};
   int batch_count_ = 0;
   std::int64_t steps_ = 0;
   std::vector<Pass> passes_;
@@ -70,5 +76,23 @@ private:
   HostArray<int> indices_;
   HostArray<float> gradients_, records_;
 };
+
+// Calls f(first, last) for each run of particles in a block of cells: its columns along z.
+template <class F> void for_each_run(const CellTable &table, int block, F &&f) {
+  const int w = table.colouring.block_width;
+  const int ny = table.grid.size[1], nz = table.grid.size[2], by = ny / w, bz = nz / w;
+  const int z = block % bz * w, y = block / bz % by * w, x = block / bz / by * w;
+  for (int dx = 0; dx < w; ++dx)
+    for (int dy = 0; dy < w; ++dy) {
+      const int cell = ((x + dx) * ny + y + dy) * nz + z;
+      if (table.starts[cell] != table.starts[cell + w]) f(table.starts[cell], table.starts[cell + w]);
+    }
+}
+
+template <class F> void VisitOrder::for_each_run_of_group(int group, F &&f) const {
+  const auto g = static_cast<std::size_t>(group);
+  for (int e = group_first_entry_[g]; e < group_first_entry_[g + 1]; ++e)
+    for_each_run(table_, entries_[static_cast<std::size_t>(e)].block, f);
+}
 
 } // namespace loam

@@ -56,7 +56,7 @@ struct JacobiApply {
     const Vec4<Real> own = team.velocity(p), x = team.own_row(p, positions);
     Vec3<Lane> sum = {Lane(0.0f), Lane(0.0f), Lane(0.0f)};
     const Vec3<Lane> center = team.spread(x.xyz());
-    for (auto k : team.neighbours(p)) {
+    for (auto k : team.unweighted_neighbours(p)) {
       const Vec3<Lane> d = center - team.neighbour_row(k, positions).xyz();
       const Vec3<Lane> g = kernel.gradient_factor(square_root(dot(d, d))) * d;
       const Vec3<Lane> a = team.neighbour_row(k, rows.column[0]).xyz(), b = team.neighbour_row(k, rows.column[1]).xyz(),

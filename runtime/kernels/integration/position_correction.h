@@ -22,6 +22,11 @@ struct CorrectPositions {
   float share; // of the violation that one visit removes: 1 in turn, less for all at once
   Vec3<float> up;
 
+  // Most pairs are far enough apart: then there is nothing to do, and nothing to write.
+  template <class T> LOAM_FN auto violated(Vec3<T> d, T turn, T close) const {
+    return both(dot(d, d) < T(least_distance * least_distance), turn < close);
+  }
+
   // One-sided: the pair's velocity change along its direction, and its moment.
   template <class T> LOAM_FN Vec3<T> velocity_change(Vec3<T> d, T weight, T active, int turn, T &moment) const {
     const T zero(0.0f), one(1.0f), h(substep), least(least_distance);
@@ -53,12 +58,13 @@ struct CorrectPositionsInTurn : CorrectPositions {
     for (auto k : team.close_neighbours(p)) {
       const Vec4<Real> other = team.neighbour_velocity(k);
       const Vec3<Real> d = (x - team.neighbour_row(k, positions).xyz()) + h * (v - other.xyz());
-      const Real active = select(Real(static_cast<float>(turn)) < close, one, zero);
-      const Vec3<Real> j = velocity_change(d, own.w + other.w, active, turn, moment);
+      const auto too_near = violated(d, Real(static_cast<float>(turn)), close);
+      ++turn;
+      if (!any(too_near)) continue;
+      const Vec3<Real> j = velocity_change(d, own.w + other.w, select(too_near, one, zero), turn, moment);
       const Vec3<Real> u = other.xyz() - other.w * j;
       team.set_neighbour_velocity(k, {u.x, u.y, u.z, other.w});
       v = v + own.w * j;
-      ++turn;
     }
     team.set_velocity(p, {v.x, v.y, v.z, own.w});
     team.set_field(p, Record::pair_moment, moment);
@@ -80,9 +86,10 @@ struct CorrectPositionsAtOnce : CorrectPositions {
     for (auto k : team.close_neighbours(p)) {
       const Vec4<Real> other = team.neighbour_velocity(k);
       const Vec3<Real> d = (x - team.neighbour_row(k, positions).xyz()) + h * (own.xyz() - other.xyz());
-      const Real active = select(Real(static_cast<float>(turn)) < close, one, zero);
-      sum = sum + velocity_change(d, own.w + other.w, active, turn, moment);
+      const auto too_near = violated(d, Real(static_cast<float>(turn)), close);
       ++turn;
+      if (!any(too_near)) continue;
+      sum = sum + velocity_change(d, own.w + other.w, select(too_near, one, zero), turn, moment);
     }
     const Vec3<Real> v = own.xyz() + own.w * sum;
     team.set_own_row(p, corrected, {v.x, v.y, v.z, own.w});

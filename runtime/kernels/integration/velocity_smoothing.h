@@ -22,7 +22,7 @@ struct SmoothVelocities {
     const Vec3<Lane> center = team.spread(x.xyz()), v = team.spread(own.xyz());
     const Lane own_volume = team.spread(x.w), own_w = team.spread(own.w), zero(0.0f), one(1.0f);
     Vec3<Lane> sum = {zero, zero, zero};
-    for (auto k : team.neighbours(p)) {
+    for (auto k : team.unweighted_neighbours(p)) {
       const Vec4<Lane> other = team.neighbour_row(k, positions), u = team.neighbour_velocity(k);
       const Vec3<Lane> d = other.xyz() - center;
       const Lane weights = own_w + u.w;

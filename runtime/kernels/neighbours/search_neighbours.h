@@ -1,8 +1,10 @@
 // Neighbour search, in two passes over the candidates of the 27 cells around a particle: count, then (when the lists have their places)
 // fill. Nothing is written before it is known that it fits.
 //
-// Close pairs, which position correction looks at, stand first in a list. In turn-by-turn solving each close pair has one owner: the lower index
-// where the indices' sum is even, the higher one where it is odd, which spreads the work evenly.
+// A team tests a packet of candidates at once, one per lane; what it found comes as a word of bits, one per lane.
+//
+// Close pairs, which position correction looks at, stand first in a list. In turn-by-turn solving each close pair has one owner: the lower
+// index where the indices' sum is even, the higher one where it is odd, which spreads the work evenly.
 #pragma once
 
 #include "math/vector.h"
@@ -14,12 +16,18 @@ struct CandidateTest {
   float close_squared; // 0: no position correction
   bool shared;         // close pairs stand in both lists
 
-  template <class Team, class K> LOAM_FN auto near(Team &team, K k, typename Team::Lane squared) const {
-    return both(squared < typename Team::Lane(support_squared), team.other(k));
-  }
-  template <class Team, class K, class M> LOAM_FN auto close(Team &team, K k, typename Team::Lane squared, M near) const {
-    const auto pair = both(near, squared < typename Team::Lane(close_squared));
-    return shared ? pair : both(pair, team.owned(k));
+  struct Found {
+    unsigned near, close;
+  };
+  template <class Team, class K> LOAM_FN Found operator()(Team &team, const K &packet) const {
+    const auto squared = team.distance_squared(packet);
+    const unsigned near = team.bits_below(squared, support_squared) & team.other_bits(packet);
+    unsigned close = 0;
+    if (near != 0 && close_squared > 0.0f) {
+      close = team.bits_below(squared, close_squared) & near;
+      if (!shared) close &= team.owned_bits(packet);
+    }
+    return {near, close};
   }
 };
 
@@ -30,11 +38,10 @@ struct CountNeighbours {
 
   template <class Team> LOAM_FN void operator()(Team &team, int i) const {
     int total = 0, close = 0;
-    for (auto k : team.candidates(i)) {
-      const auto squared = team.distance_squared(k);
-      const auto near = test.near(team, k, squared);
-      total += team.count(near);
-      close += team.count(test.close(team, k, squared, near));
+    for (auto packet : team.candidates(i)) {
+      const CandidateTest::Found found = test(team, packet);
+      total += team.count(found.near);
+      close += team.count(found.close);
     }
     team.store(neighbour_counts, i, total);
     team.store(close_counts, i, close);
@@ -48,12 +55,9 @@ struct FillNeighbours {
 
   template <class Team> LOAM_FN void operator()(Team &team, int i) const {
     team.open_list(i, neighbour_counts[i], close_counts[i]);
-    for (auto k : team.candidates(i)) {
-      const auto squared = team.distance_squared(k);
-      const auto near = test.near(team, k, squared);
-      if (!any(near)) continue;
-      const auto close = test.close(team, k, squared, near);
-      team.append(k, near, close);
+    for (auto packet : team.candidates(i)) {
+      const CandidateTest::Found found = test(team, packet);
+      if (found.near != 0) team.append(packet, found.near, found.close);
     }
     team.close_list(i);
   }
