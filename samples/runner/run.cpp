@@ -54,6 +54,7 @@ Scene prepare_scene(const Options &options) {
 } // namespace
 
 int run(const Options &options) {
+  const auto previous_handler = std::signal(SIGINT, on_interrupt); // before the scene is filled, which may take long
   const Scene scene = prepare_scene(options);
   const std::uint32_t threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   const tbb::global_control thread_limit(tbb::global_control::max_allowed_parallelism, threads);
@@ -77,7 +78,6 @@ int run(const Options &options) {
              scene.world.substeps, scene.world.iterations, scene.frames, statistics.backend,
              statistics.instruction_set.empty() ? "" : " ", statistics.instruction_set, threads, threads == 1 ? "" : "s");
 
-  const auto previous_handler = std::signal(SIGINT, on_interrupt);
   double empty_frames = 0; // for how many frames the watched region has been empty
   {
     ProgressBar progress(scene.frames);
