@@ -36,6 +36,7 @@ inline scenes::Scene scene_of(const Case &measured) {
  * only ever adds time. A pair visit is one neighbour pair in one iteration. */
 inline constexpr const char *solve_rate_counter = "solve_visits/s";
 inline constexpr const char *step_rate_counter = "step_visits/s";
+inline constexpr const char *stage_counter_prefix = "ns/particle: "; // followed by the stage's name
 
 /* Collects substeps and writes the counters. */
 class Tally {

@@ -58,7 +58,7 @@ void run_library(benchmark::State &state, const Case &measured) {
     state.counters["bytes/particle"] = double(world.memory_bytes()) / double(measured.particles);
     const std::vector<loam_stage> stages = world.stages();
     for (std::size_t stage = 0; stage < stages.size(); ++stage)
-      state.counters["ns/particle: " + std::string(stages[stage].name)] +=
+      state.counters[stage_counter_prefix + std::string(stages[stage].name)] +=
           1e9 * stage_seconds[stage] / double(measured.particles);
     if (world.statistics().non_finite > 0) state.SkipWithError("particles are not finite");
   } catch (const std::exception &error) {

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <unistd.h>
 
 namespace loam::benchmarks {
 
@@ -14,7 +15,22 @@ double counter(const benchmark::UserCounters &counters, const char *name) {
   return found == counters.end() ? 0 : double(found->second);
 }
 
+/* The stages by name, since Google Benchmark keeps counters so, with their shares. */
+std::string stages_of(const benchmark::UserCounters &counters) {
+  const std::string prefix = stage_counter_prefix;
+  std::string text;
+  for (const auto &[name, value] : counters) {
+    if (name.rfind(prefix, 0) != 0) continue;
+    char number[32];
+    std::snprintf(number, sizeof number, " %.0f", double(value));
+    text += (text.empty() ? "" : ", ") + name.substr(prefix.size()) + number;
+  }
+  return text;
+}
+
 } // namespace
+
+RatioTable::RatioTable() : ConsoleReporter(isatty(STDOUT_FILENO) ? OO_Color : OO_None) {}
 
 void RatioTable::ReportRuns(const std::vector<Run> &runs) {
   ConsoleReporter::ReportRuns(runs);
@@ -25,11 +41,17 @@ void RatioTable::ReportRuns(const std::vector<Run> &runs) {
     const std::size_t slash = name.rfind('/');
     rows_.push_back({name.substr(0, slash), std::strtol(name.c_str() + slash + 1, nullptr, 10),
                      counter(run.counters, solve_rate_counter), counter(run.counters, step_rate_counter),
-                     counter(run.counters, "ns/particle/substep"), counter(run.counters, "bytes/particle")});
+                     counter(run.counters, "ns/particle/substep"), counter(run.counters, "bytes/particle"),
+                     stages_of(run.counters)});
   }
 }
 
 void RatioTable::print() const {
+  print_ratios();
+  print_stages();
+}
+
+void RatioTable::print_ratios() const {
   std::map<long, Row> references; // by particle count
   for (const Row &row : rows_)
     if (row.configuration.rfind("reference", 0) == 0) references[row.particles] = row;
@@ -52,6 +74,14 @@ void RatioTable::print() const {
                 row.solve_rate / 1e6, solve_ratio.c_str(), row.step_rate / 1e6, step_ratio.c_str(), row.nanoseconds,
                 row.bytes);
   }
+}
+
+void RatioTable::print_stages() const {
+  std::printf("\nNanoseconds a particle and substep by stage: the fastest substep of each, for the reference the mean.\n\n"
+              "| configuration | particles | stages |\n|---|--:|---|\n");
+  for (const Row &row : rows_)
+    if (!row.stages.empty())
+      std::printf("| %s | %ld | %s |\n", row.configuration.c_str(), row.particles, row.stages.c_str());
 }
 
 } // namespace loam::benchmarks

@@ -10,7 +10,7 @@ namespace loam::benchmarks {
 
 class RatioTable : public benchmark::ConsoleReporter {
 public:
-  using ConsoleReporter::ConsoleReporter;
+  RatioTable(); // colours only where the output is a terminal
   void ReportRuns(const std::vector<Run> &runs) override;
 
   /* As Markdown, to standard output. */
@@ -21,7 +21,10 @@ private:
     std::string configuration;
     long particles;
     double solve_rate, step_rate, nanoseconds, bytes;
+    std::string stages; // "sort 28, ..." in nanoseconds a particle and substep
   };
+  void print_ratios() const;
+  void print_stages() const;
   std::vector<Row> rows_;
 };
 

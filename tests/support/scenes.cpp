@@ -48,12 +48,13 @@ public:
   Filler(Scene &scene, const Lattice &lattice) : scene_(scene), lattice_(lattice), random_(lattice.seed) {
     scene_.spacing = lattice.spacing;
   }
-  void put(float x, float y, float z, bool jitter_y) {
+  /* What stands against a plane is not moved along its normal: it would start inside the plane's stand-off. */
+  void put(float x, float y, float z, bool jitter_y, bool jitter_x = true, bool jitter_z = true) {
     const float j = lattice_.jitter;
     const float offset[3] = {random_.between(-j, j), random_.between(-j, j), random_.between(-j, j)};
-    scene_.positions.push_back((x + offset[0]) * lattice_.spacing);
+    scene_.positions.push_back((x + (jitter_x ? offset[0] : 0)) * lattice_.spacing);
     scene_.positions.push_back((y + (jitter_y ? offset[1] : 0)) * lattice_.spacing);
-    scene_.positions.push_back((z + offset[2]) * lattice_.spacing);
+    scene_.positions.push_back((z + (jitter_z ? offset[2] : 0)) * lattice_.spacing);
   }
 
 private:
@@ -107,7 +108,8 @@ Scene slab(const loam_material_def &material, int length, float aspect, int dept
   const int layers = int(std::lround(aspect * float(length)));
   for (int x = 0; x < length; ++x)
     for (int y = 0; y < layers; ++y)
-      for (int z = 0; z < depth; ++z) filler.put(float(x) + 0.5f, float(y) + 0.5f, float(z) + 0.5f, y > 0);
+      for (int z = 0; z < depth; ++z)
+        filler.put(float(x) + 0.5f, float(y) + 0.5f, float(z) + 0.5f, y > 0, x > 0, z > 0 && z + 1 < depth);
   return scene;
 }
 

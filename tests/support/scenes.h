@@ -2,7 +2,7 @@
  *
  * A Scene is plain data, so that the library (through its public C interface, by World) and the reference solver start from the very same
  * particles. Up is y, the ground is the plane y = 0, particles sit on a cubic lattice of constant `spacing`, moved at random by up to `jitter`
- * spacings along each axis; the first layer stands half a spacing above the ground and is not moved vertically. */
+ * spacings along each axis; layers that stand against the ground or a wall, half a spacing off, are not moved along its normal. */
 #pragma once
 
 #include <cstdint>
