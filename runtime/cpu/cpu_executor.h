@@ -11,6 +11,7 @@
 #include "cpu/visit_order.h"
 #include "cpu/workers.h"
 #include "scene/memory.h"
+#include "schedule/schedule.h"
 #include "solver/cell_table.h"
 #include "solver/execution_settings.h"
 
@@ -139,6 +140,8 @@ public:
     lap_ = now;
     return seconds;
   }
+  // Tells a schedule what passed since the previous call. An executor that runs behind its caller may do so later, at the end of the session.
+  void lap(Schedule &schedule, int stage, std::uint64_t items) { schedule.record(stage, lap(), items); }
 
 private:
   template <class F> void in_chunks(int count, int least, F &&function) {
