@@ -137,7 +137,7 @@ typedef struct loam_statistics {
   uint64_t contacts;       /* collider contact planes in the last substep */
   uint64_t non_finite;     /* particles whose position, velocity or strain is not finite now; such a particle is held in place */
   uint64_t speed_limited;  /* times a particle was slowed to r / substep in the step */
-  uint64_t strain_limited; /* times a trial strain was clamped to its bound in the last substep of the step */
+  uint64_t strain_limited; /* times a strain was clamped to its bound in the step */
 
   double step_seconds; /* wall time of the step */
 
@@ -145,8 +145,10 @@ typedef struct loam_statistics {
    * not mean that the step is solved exactly. 0 where nothing is strained. */
   double residual;
 
-  /* -sum V tau : (g g^T) / |g|^2 over the weight of the matter above its supports: 1 in true equilibrium at rest, below 1 where an
-   * unconverged solve leaves matter softer than its material. Meaningful only when nothing moves. 0 without gravity or contacts. */
+  /* The stress that matter shows over the stress that its weight calls for, from the virial theorem along gravity:
+   *   (sum of pair forces' moments - sum V0 tau : u u^T) / (sum m g . x - moment of the contact forces),  u the direction of gravity.
+   * 1 in true equilibrium at rest. An unconverged solve passes on only part of the stress, so matter deforms as if its moduli were smaller by this
+   * factor: 2 means twice too soft. Meaningful only when nothing moves. 0 without gravity or contacts. */
   double virial;
 
   double kinetic_energy; /* J */

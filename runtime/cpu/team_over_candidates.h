@@ -13,54 +13,38 @@ namespace loam::LOAM_INSTRUCTION_SET {
 struct TeamOverCandidates {
   using Lane = Pack;
   static constexpr int W = Pack::width;
+  static constexpr int buffer_size = 512; // about twice the usual number of candidates
 
   CpuCandidates d;
   Pack x, y, z; // of the particle
   int particle = 0;
 
-  // A run of candidates, W at a time. Up to 18 of them: nine columns of cells, each in one piece, or two where the torus' seam cuts it.
-  struct Runs {
-    int first[18], last[18];
-    int count = 0;
-  };
-  struct Candidate {
-    int base; // of this pack
-    int last; // one past the run's end
-  };
-  struct Iterator {
-    const Runs *runs;
-    int run, base;
-    LOAM_FN Candidate operator*() const { return {base, runs->last[run]}; }
-    LOAM_FN bool operator!=(const Iterator &end) const { return run != end.run; }
-    LOAM_FN void operator++() {
-      base += W;
-      if (base >= runs->last[run]) {
-        ++run;
-        base = run < runs->count ? runs->first[run] : 0;
-      }
-    }
-  };
-  struct Range {
-    const Runs *runs;
-    LOAM_FN Iterator begin() const { return {runs, 0, runs->first[0]}; }
-    LOAM_FN Iterator end() const { return {runs, runs->count, 0}; }
-  };
+  // The runs of candidates of one cell. Up to 18 of them: nine columns of cells, each in one piece, or two where the torus' seam cuts it.
+  int cell = -1;
+  int run_count = 0;
+  int run_first[18], run_last[18];
 
-  Runs runs;
-  int cell = -1; // that `runs` belongs to
+  // The candidates themselves, copied into one piece, which the particles of the cell share. Where they do not fit they come in segments.
+  alignas(64) float buffer_x[buffer_size], buffer_y[buffer_size], buffer_z[buffer_size];
+  alignas(64) int buffer_index[buffer_size];
+  int filled = 0;
+  bool first_segment = false; // the buffer holds the first segment
+  int next_run = 0, next_particle = 0;
+  // Where the particles of the run that holds the cell itself stand in the buffer: particle + own_shift, from own_begin to own_end.
+  int own_shift = 0, own_begin = 0, own_end = 0;
 
   LOAM_FN explicit TeamOverCandidates(const CpuCandidates &views) : d(views) {}
 
   LOAM_FN void add_run(int from_cell, int to_cell) {
     const int first = d.starts[from_cell], last = d.starts[to_cell];
     if (first == last) return;
-    runs.first[runs.count] = first;
-    runs.last[runs.count] = last;
-    ++runs.count;
+    run_first[run_count] = first;
+    run_last[run_count] = last;
+    ++run_count;
   }
   LOAM_FN void find_runs(int c) {
     cell = c;
-    runs.count = 0;
+    run_count = 0;
     const int nx = d.size[0], ny = d.size[1], nz = d.size[2];
     const int cz = c % nz, cy = c / nz % ny, cx = c / nz / ny;
     for (int dx = -1; dx <= 1; ++dx)
@@ -76,57 +60,111 @@ struct TeamOverCandidates {
           add_run(row, row + 1);
         }
       }
+    next_run = 0;
+    next_particle = run_first[0]; // a particle's own cell is never empty
+    first_segment = load_segment();
   }
+  // Copies a pack at a time; what runs over a run's end is overwritten by the next run, or by the far-away candidates that fill the last pack.
+  LOAM_FN bool load_segment() {
+    filled = 0;
+    own_begin = own_end = 0;
+    while (next_run < run_count && filled + 2 * W <= buffer_size) {
+      __builtin_memcpy(buffer_x + filled, d.x + next_particle, sizeof(float) * W);
+      __builtin_memcpy(buffer_y + filled, d.y + next_particle, sizeof(float) * W);
+      __builtin_memcpy(buffer_z + filled, d.z + next_particle, sizeof(float) * W);
+      for (int l = 0; l < W; ++l) buffer_index[filled + l] = next_particle + l;
+      const int rest = run_last[next_run] - next_particle, taken = rest < W ? rest : W;
+      if (particle >= run_first[next_run] && particle < run_last[next_run]) {
+        own_shift = filled - next_particle;
+        own_begin = own_end > own_begin ? own_begin : filled;
+        own_end = filled + taken;
+      }
+      filled += taken;
+      next_particle += W;
+      if (rest <= W && ++next_run < run_count) next_particle = run_first[next_run];
+    }
+    for (int l = 0; l < W; ++l) buffer_x[filled + l] = 1e30f;
+    return filled > 0;
+  }
+
+  // A pack of candidates: its place in the buffer.
+  struct Iterator {
+    TeamOverCandidates *team;
+    int at; // -1: the end
+    LOAM_FN int operator*() const { return at; }
+    LOAM_FN bool operator!=(const Iterator &end) const { return at != end.at; }
+    LOAM_FN void operator++() {
+      at += W;
+      if (at < team->filled) return;
+      at = -1;
+      if (team->next_run < team->run_count) {
+        team->load_segment();
+        team->first_segment = false;
+        at = 0;
+      }
+    }
+  };
+  struct Range {
+    TeamOverCandidates *team;
+    LOAM_FN Iterator begin() const { return {team, 0}; }
+    LOAM_FN Iterator end() const { return {team, -1}; }
+  };
   LOAM_FN Range candidates(int i) {
     particle = i;
     x = Pack(d.x[i]);
     y = Pack(d.y[i]);
     z = Pack(d.z[i]);
-    if (static_cast<int>(d.keys[i]) != cell) find_runs(static_cast<int>(d.keys[i]));
-    return {&runs};
+    const int own = static_cast<int>(d.keys[i]);
+    if (own != cell || !first_segment) find_runs(own);
+    return {this};
   }
-  LOAM_FN Pack distance_squared(const Candidate &k) const {
-    const Pack dx = Pack::load_unaligned(d.x + k.base) - x, dy = Pack::load_unaligned(d.y + k.base) - y,
-               dz = Pack::load_unaligned(d.z + k.base) - z;
+  LOAM_FN Pack distance_squared(int packet) const {
+    const Pack dx = Pack::load(buffer_x + packet) - x, dy = Pack::load(buffer_y + packet) - y,
+               dz = Pack::load(buffer_z + packet) - z;
     return dx * dx + (dy * dy + dz * dz);
   }
   LOAM_FN unsigned bits_below(Pack squared, float limit) const { return mask_bits(squared < Pack(limit)); }
-  // Candidates of the run that are not the particle itself.
-  LOAM_FN unsigned other_bits(const Candidate &k) const {
-    const unsigned left = static_cast<unsigned>(k.last - k.base), self = static_cast<unsigned>(particle - k.base);
-    const unsigned in_run = left >= 32 ? ~0u : (1u << left) - 1u;
-    return self < 32 ? in_run & ~(1u << self) : in_run;
+  // All but the particle itself.
+  LOAM_FN unsigned other_bits(int packet) const {
+    const int self = particle + own_shift;
+    const unsigned lane = static_cast<unsigned>(self - packet);
+    return self >= own_begin && self < own_end && lane < 32 ? ~(1u << lane) : ~0u;
   }
-  // Candidates whose close pair with the particle this particle owns.
-  LOAM_FN unsigned owned_bits(const Candidate &k) const {
-    const int self = particle - k.base;
-    const unsigned above = self < 0 ? ~0u : self >= 31 ? 0u : ~0u << (self + 1);
-    const unsigned even_sum = ((k.base ^ particle) & 1) != 0 ? 0xaaaaaaaau : 0x55555555u;
-    return (even_sum & above) | ~(even_sum | above);
-  }
+  // Those whose close pair with the particle this particle owns.
+  LOAM_FN unsigned owned_bits(int packet) const { return owned_pairs(buffer_index + packet, particle); }
   LOAM_FN int count(unsigned bits) const { return __builtin_popcount(bits); }
   LOAM_FN void store(int *values, int i, int value) const { values[i] = value; }
 
-  // filling
+  // Filling: what is found is gathered in two short lists without branches, then written to its places, a lane's width apart. Lists longer than
+  // the buffers are written piece by piece.
   int *close_end = nullptr, *far_end = nullptr, *list_end = nullptr;
-  LOAM_FN void open_list(int i, int total, int close) {
+  int close_found[buffer_size], far_found[buffer_size];
+  int close_count = 0, far_count = 0;
+
+  LOAM_FN void open_list(int i, int, int close) {
     const int slot = d.slots[i], batch = slot / W, lane = slot % W;
     close_end = d.indices + static_cast<long>(d.offsets[batch]) * W + lane;
     far_end = close_end + static_cast<long>(close) * W;
     list_end = d.indices + static_cast<long>(d.offsets[batch + 1]) * W + lane;
-    (void)total;
+    close_count = far_count = 0;
   }
-  LOAM_FN void append(const Candidate &k, unsigned near, unsigned close) {
-    for (unsigned rest = near & ~close; rest != 0; rest &= rest - 1) {
-      *far_end = k.base + __builtin_ctz(rest);
-      far_end += W;
-    }
-    for (unsigned rest = close; rest != 0; rest &= rest - 1) {
-      *close_end = k.base + __builtin_ctz(rest);
-      close_end += W;
-    }
+  LOAM_FN void append(int packet, unsigned near, unsigned close) {
+    const unsigned far = near & ~close;
+    compress(buffer_index + packet, close, close_found + close_count);
+    close_count += count(close);
+    compress(buffer_index + packet, far, far_found + far_count);
+    far_count += count(far);
+    if (far_count > buffer_size - 2 * W || close_count > buffer_size - 2 * W) write_found();
+  }
+  LOAM_FN void write_found() {
+    for (int k = 0; k < close_count; ++k) close_end[static_cast<long>(k) * W] = close_found[k];
+    for (int k = 0; k < far_count; ++k) far_end[static_cast<long>(k) * W] = far_found[k];
+    close_end += static_cast<long>(close_count) * W;
+    far_end += static_cast<long>(far_count) * W;
+    close_count = far_count = 0;
   }
   LOAM_FN void close_list(int i) {
+    write_found();
     for (; far_end < list_end; far_end += W) *far_end = i;
   }
 };

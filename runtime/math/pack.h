@@ -57,6 +57,21 @@ LOAM_FN unsigned mask_bits(Mask m) {
   return static_cast<unsigned>(bytes[0]) | (static_cast<unsigned>(bytes[1]) << 8);
 }
 
+// For the neighbour search, on indices of the lanes' candidates. Bit l: the pair of `self` and index[l] belongs to self.
+LOAM_FN unsigned owned_pairs(const int *index, int self) {
+  const hn::RebindToSigned<FloatTag> tag;
+  const auto other = hn::Load(tag, index), own = hn::Set(tag, self), one = hn::Set(tag, 1);
+  const auto even_sum = hn::Eq(hn::And(hn::Xor(other, own), one), hn::Zero(tag));
+  const auto above = hn::Gt(other, own);
+  return ~mask_bits({hn::RebindMask(FloatTag(), hn::Xor(even_sum, above))});
+}
+// Copies the entries whose bits are set to `to`, one after the other; up to a pack of others behind them.
+LOAM_FN void compress(const int *from, unsigned bits, int *to) {
+  const hn::RebindToSigned<FloatTag> tag;
+  std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8)};
+  hn::StoreU(hn::Compress(hn::Load(tag, from), hn::LoadMaskBits(tag, bytes)), tag, to);
+}
+
 // Four registers of rows: register a holds, in its 128-bit block q, the row index[a + 4 q]; after the transposition within blocks, lane l
 // belongs to index[l].
 template <int First> LOAM_FN NativePack load_blocks(const float *rows, const int *index) {

@@ -56,6 +56,17 @@ LOAM_FN unsigned mask_bits(Mask m) {
   return bits;
 }
 
+// For the neighbour search, as in math/pack.h.
+LOAM_FN unsigned owned_pairs(const int *index, int self) {
+  unsigned bits = 0;
+  for (int l = 0; l < 4; ++l) bits |= (self < index[l]) == (((index[l] ^ self) & 1) == 0) ? 1u << l : 0u;
+  return bits;
+}
+LOAM_FN void compress(const int *from, unsigned bits, int *to) {
+  for (int l = 0; l < 4; ++l)
+    if ((bits >> l & 1u) != 0) *to++ = from[l];
+}
+
 LOAM_FN Vec4<Pack> load_rows(const Row *rows, const int *index) {
   const Row &a = rows[index[0]], &b = rows[index[1]], &c = rows[index[2]], &d = rows[index[3]];
   return {NativePack{a.x, b.x, c.x, d.x}, NativePack{a.y, b.y, c.y, d.y}, NativePack{a.z, b.z, c.z, d.z},

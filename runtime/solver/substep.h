@@ -28,7 +28,7 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
   lap(schedule_.speed_limit, particles());
   if (contact_count_ > 0) {
     ex.for_each(contact_count_, SolveContacts{contacts_.data(), now_.velocities.data(), h_});
-    const float margin = 0.02f * 0.5f * settings_.kernel_radius;
+    const float margin = 0.05f * 0.5f * settings_.kernel_radius;
     const int colliders = static_cast<int>(input.colliders.size());
     ex.for_each(contact_count_, SweepContacts{contacts_.data(), now_.positions.data(), now_.velocities.data(),
                                               collider_views_.data(), colliders, h_, margin});

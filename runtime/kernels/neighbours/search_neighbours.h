@@ -21,13 +21,10 @@ struct CandidateTest {
   };
   template <class Team, class K> LOAM_FN Found operator()(Team &team, const K &packet) const {
     const auto squared = team.distance_squared(packet);
+    // Without branches: what a packet finds is hard to predict.
     const unsigned near = team.bits_below(squared, support_squared) & team.other_bits(packet);
-    unsigned close = 0;
-    if (near != 0 && close_squared > 0.0f) {
-      close = team.bits_below(squared, close_squared) & near;
-      if (!shared) close &= team.owned_bits(packet);
-    }
-    return {near, close};
+    const unsigned owned = shared ? ~0u : team.owned_bits(packet);
+    return {near, near & owned & team.bits_below(squared, close_squared)};
   }
 };
 
@@ -57,7 +54,7 @@ struct FillNeighbours {
     team.open_list(i, neighbour_counts[i], close_counts[i]);
     for (auto packet : team.candidates(i)) {
       const CandidateTest::Found found = test(team, packet);
-      if (found.near != 0) team.append(packet, found.near, found.close);
+      team.append(packet, found.near, found.close);
     }
     team.close_list(i);
   }
