@@ -109,22 +109,21 @@ template <class TileType> struct TeamOverCandidates {
 
   // filling; `list` is where the particle's list begins, set before the stage runs
   int *list = nullptr;
-  int close_end = 0, far_end = 0;
+  struct List {
+    int close_end, far_end;
+  };
   LOAM_FN void open_visit(const Visit &visit) {
     list = d.indices + static_cast<std::int64_t>(visit.first_line) * TilePairs::line;
   }
-  LOAM_FN void open_list(int, int, int close) {
-    close_end = 0;
-    far_end = close;
-  }
-  LOAM_FN void append(const Packet &k, unsigned near, unsigned close) {
+  LOAM_FN List open_list(int, int, int close) const { return {0, close}; }
+  LOAM_FN void append(List &ends, const Packet &k, unsigned near, unsigned close) {
     const unsigned far = near & ~close;
-    tile.append(list + far_end, far, k.base);
-    far_end += count(far);
-    tile.append(list + close_end, close, k.base);
-    close_end += count(close);
+    tile.append(list + ends.far_end, far, k.base);
+    ends.far_end += count(far);
+    tile.append(list + ends.close_end, close, k.base);
+    ends.close_end += count(close);
   }
-  LOAM_FN void close_list(int) {}
+  LOAM_FN void close_list(const List &) {}
 };
 
 } // namespace loam

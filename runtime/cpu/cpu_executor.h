@@ -24,7 +24,8 @@ public:
 
   explicit CpuExecutor(const ExecutionSettings &settings)
       : allocator_(settings.allocator), workers_(settings.thread_count, settings.job_system),
-        table_(kernel_table(settings.instruction_set)), sort_(allocator_), order_(allocator_, table_->width) {}
+        table_(kernel_table(settings.instruction_set)), sort_(allocator_),
+        order_(allocator_, table_->width, workers_.thread_count()) {}
 
   template <class T> Array<T> array() { return Array<T>(allocator_); }
   void reserve(std::size_t particle_capacity, int material_count) {
@@ -86,16 +87,22 @@ public:
     order_.make_room();
   }
   void fill_neighbours(const CellTable &table, const FillNeighbours &stage) {
-    order_.fill_idle_lanes(workers_);
-    const CpuCandidates views = candidates(table);
+    CpuCandidates views = candidates(table);
     const auto launch = table_->candidate[IndexOf<FillNeighbours, CandidateStages>::value];
     if (table.material_count > 1) { // a run may hold particles of several groups
+      views.lists = order_.lists_of_all();
       in_chunks(table.particle_count, 512, [&](int first, int last) { launch(&stage, views, first, last); });
+      in_chunks(order_.batch_count(), 16,
+                [&](int first, int last) { order_.interleave_lists(order_.lists_of_all(), first, last); });
       return;
     }
     in_chunks(order_.group_count(), 1, [&](int first_group, int last_group) {
-      for (int group = first_group; group < last_group; ++group)
-        order_.for_each_run_of_group(group, [&](int first, int last) { launch(&stage, views, first, last); });
+      CpuCandidates own = views;
+      for (int group = first_group; group < last_group; ++group) {
+        own.lists = order_.lists_of_group(group, Workers::current());
+        order_.for_each_run_of_group(group, [&](int first, int last) { launch(&stage, own, first, last); });
+        order_.interleave_lists(own.lists, order_.group_begin(group), order_.group_begin(group + 1));
+      }
     });
   }
   std::size_t list_bytes() const { return order_.list_bytes(); }
@@ -158,7 +165,7 @@ private:
   CpuCandidates candidates(const CellTable &table) {
     return {table.x,        table.y,          table.z,
             table.keys,     table.starts,     {table.grid.size[0], table.grid.size[1], table.grid.size[2]},
-            order_.slots(), order_.offsets(), order_.indices()};
+            order_.slots(), order_.offsets(), nullptr};
   }
 
   HostAllocator allocator_;

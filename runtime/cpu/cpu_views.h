@@ -34,10 +34,11 @@ struct CpuCandidates {
   const std::uint32_t *keys; // cell of each particle
   const int *starts;
   int size[3];
-  // filling only
+  // Filling only. Lists are first written in two pieces each, where the gradients will be, which take three times as much room: the far neighbours of a
+  // batch's lane l at lists + 3 * (W * offsets[batch] + l * steps of the batch), the close ones 2 * steps behind.
   const int *slots; // batch * W + lane of each particle
   const int *offsets;
-  int *indices;
+  int *lists;
 };
 
 } // namespace loam

@@ -135,38 +135,35 @@ struct TeamOverCandidates {
   LOAM_FN int count(unsigned bits) const { return __builtin_popcount(bits); }
   LOAM_FN void store(int *values, int i, int value) const { values[i] = value; }
 
-  // Filling: what is found is gathered in two short lists without branches, then written to its places, a lane's width apart. Lists longer than
-  // the buffers are written piece by piece.
-  int *close_end = nullptr, *far_end = nullptr, *list_end = nullptr;
-  int close_found[buffer_size], far_found[buffer_size];
-  int close_count = 0, far_count = 0;
-
-  LOAM_FN void open_list(int i, int, int close) {
+  // Filling: a particle's list is in two pieces here, far neighbours and close ones, each with room behind it for a pack too many. They are copied there
+  // without branches; joining them and interleaving them with the lists of the other lanes is a step of its own, see VisitOrder.
+  struct List {
+    int *far_end, *close_end;
+    bool roomy;
+  };
+  LOAM_FN List open_list(int i, int, int close) const {
     const int slot = d.slots[i], batch = slot / W, lane = slot % W;
-    close_end = d.indices + static_cast<long>(d.offsets[batch]) * W + lane;
-    far_end = close_end + static_cast<long>(close) * W;
-    list_end = d.indices + static_cast<long>(d.offsets[batch + 1]) * W + lane;
-    close_count = far_count = 0;
+    const long first = d.offsets[batch], steps = d.offsets[batch + 1] - first;
+    int *const list = d.lists + 3 * (first * W + lane * steps);
+    return {list, list + 2 * steps, close + W <= steps};
   }
-  LOAM_FN void append(int packet, unsigned near, unsigned close) {
+  LOAM_FN int *append_one_by_one(int packet, unsigned bits, int *end) const {
+    for (; bits != 0; bits &= bits - 1) *end++ = buffer_index[packet + __builtin_ctz(bits)];
+    return end;
+  }
+  LOAM_FN void append(List &list, int packet, unsigned near, unsigned close) const {
     const unsigned far = near & ~close;
-    compress(buffer_index + packet, close, close_found + close_count);
-    close_count += count(close);
-    compress(buffer_index + packet, far, far_found + far_count);
-    far_count += count(far);
-    if (far_count > buffer_size - 2 * W || close_count > buffer_size - 2 * W) write_found();
+    if (list.roomy) {
+      compress(buffer_index + packet, far, list.far_end);
+      list.far_end += count(far);
+      compress(buffer_index + packet, close, list.close_end);
+      list.close_end += count(close);
+    } else {
+      list.far_end = append_one_by_one(packet, far, list.far_end);
+      list.close_end = append_one_by_one(packet, close, list.close_end);
+    }
   }
-  LOAM_FN void write_found() {
-    for (int k = 0; k < close_count; ++k) close_end[static_cast<long>(k) * W] = close_found[k];
-    for (int k = 0; k < far_count; ++k) far_end[static_cast<long>(k) * W] = far_found[k];
-    close_end += static_cast<long>(close_count) * W;
-    far_end += static_cast<long>(far_count) * W;
-    close_count = far_count = 0;
-  }
-  LOAM_FN void close_list(int i) {
-    write_found();
-    for (; far_end < list_end; far_end += W) *far_end = i;
-  }
+  LOAM_FN void close_list(const List &) const {}
 };
 
 } // namespace loam::LOAM_INSTRUCTION_SET

@@ -7,10 +7,10 @@
 
 namespace loam {
 
-VisitOrder::VisitOrder(const HostAllocator &allocator, int width)
-    : width_(width), entries_(allocator), group_first_batch_(allocator), group_first_entry_(allocator),
+VisitOrder::VisitOrder(const HostAllocator &allocator, int width, unsigned threads)
+    : width_(width), threads_(threads), entries_(allocator), group_first_batch_(allocator), group_first_entry_(allocator),
       group_pass_(allocator), ids_(allocator), active_(allocator), offsets_(allocator), close_steps_(allocator),
-      slots_(allocator), indices_(allocator), gradients_(allocator), records_(allocator) {}
+      slots_(allocator), indices_(allocator), gradients_(allocator), records_(allocator), scratch_(allocator) {}
 
 void VisitOrder::reserve(std::size_t particle_capacity, int material_count) {
   slots_.reserve(particle_capacity);
@@ -20,7 +20,7 @@ void VisitOrder::reserve(std::size_t particle_capacity, int material_count) {
 
 std::size_t VisitOrder::order_bytes() const {
   return entries_.bytes() + group_first_batch_.bytes() + group_first_entry_.bytes() + group_pass_.bytes() + ids_.bytes() +
-         active_.bytes() + offsets_.bytes() + close_steps_.bytes() + slots_.bytes();
+         active_.bytes() + offsets_.bytes() + close_steps_.bytes() + slots_.bytes() + scratch_.bytes();
 }
 
 namespace {
@@ -176,22 +176,35 @@ void VisitOrder::make_room() {
   // Prefetches may run past the end, which is harmless; loads do not.
   grow(indices_, steps * W);
   grow(gradients_, steps * 3 * W);
+  if (table_.material_count == 1) {
+    std::size_t most = 0;
+    for (int group = 0; group < group_count_; ++group)
+      most = std::max(most, static_cast<std::size_t>(offsets_[static_cast<std::size_t>(group_begin(group + 1))] -
+                                                     offsets_[static_cast<std::size_t>(group_begin(group))]));
+    scratch_size_ = std::max(scratch_size_, (3 * W * most + most / 8 + 63) / 64 * 64);
+    if (scratch_size_ * threads_ > scratch_.capacity()) scratch_.reserve(scratch_size_ * threads_);
+  }
   grow(records_, static_cast<std::size_t>(batch_count_) * Record::field_count * W);
 }
 
-void VisitOrder::fill_idle_lanes(Workers &workers) {
-  const int per_chunk = std::max(16, batch_count_ / 128);
-  workers.loop((batch_count_ + per_chunk - 1) / per_chunk, [&](int chunk) {
-    const int last = std::min(batch_count_, (chunk + 1) * per_chunk);
-    for (int b = chunk * per_chunk; b < last; ++b) {
-      const auto batch = static_cast<std::size_t>(b);
-      for (int lane = active_[batch]; lane < width_; ++lane) {
-        const int id = ids_[batch * static_cast<std::size_t>(width_) + static_cast<std::size_t>(lane)];
-        for (std::int64_t step = offsets_[batch]; step < offsets_[batch + 1]; ++step)
-          indices_[static_cast<std::size_t>(step * width_ + lane)] = id;
-      }
+void VisitOrder::interleave_lists(const int *lists, int first_batch, int last_batch) {
+  const auto W = static_cast<std::size_t>(width_);
+  for (auto batch = static_cast<std::size_t>(first_batch); batch < static_cast<std::size_t>(last_batch); ++batch) {
+    const int *ids = &ids_[batch * W];
+    const auto first = static_cast<std::size_t>(offsets_[batch]),
+               steps = static_cast<std::size_t>(offsets_[batch + 1]) - first;
+    const int *list = lists + 3 * first * W;
+    int *to = &indices_[first * W];
+    for (std::size_t lane = 0; lane < W; ++lane, list += 3 * steps) {
+      const bool idle = lane >= static_cast<std::size_t>(active_[batch]);
+      const auto total = idle ? 0 : static_cast<std::size_t>(table_.neighbour_counts[ids[lane]]);
+      const auto close = idle ? 0 : static_cast<std::size_t>(table_.close_counts[ids[lane]]);
+      const int *far = list - close;
+      for (std::size_t step = 0; step < close; ++step) to[step * W + lane] = list[2 * steps + step];
+      for (std::size_t step = close; step < total; ++step) to[step * W + lane] = far[step];
+      for (std::size_t step = total; step < steps; ++step) to[step * W + lane] = ids[lane];
     }
-  });
+  }
 }
 
 CpuPairs VisitOrder::pairs(Row *velocities) {

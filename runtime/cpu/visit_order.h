@@ -20,7 +20,7 @@ public:
     std::int64_t particles;
   };
 
-  VisitOrder(const HostAllocator &allocator, int width);
+  VisitOrder(const HostAllocator &allocator, int width, unsigned threads);
 
   // Room for a world's particles; called once.
   void reserve(std::size_t particle_capacity, int material_count);
@@ -31,8 +31,10 @@ public:
   // Room for the lists and records of what was arranged. If memory is refused nothing has changed.
   void make_room();
 
-  // Points the lanes that have no list of their own at a harmless row.
-  void fill_idle_lanes(Workers &workers);
+  // From the lists as they were found to lists interleaved lane by lane, the particle itself behind each list's end. Writing them so at once would touch a
+  // cache line per neighbour.
+  // `lists` is what CpuCandidates::lists was.
+  void interleave_lists(const int *lists, int first_batch, int last_batch);
 
   // Calls f(first, last) for the runs of particles, contiguous in memory, that make up a group, where all particles are of one material. The lists of
   // a group share cache lines, so whoever fills them does well to go group by group.
@@ -42,7 +44,13 @@ public:
   CpuPairs pairs(Row *velocities);
   const int *slots() const { return slots_.data(); }
   const int *offsets() const { return offsets_.data(); }
-  int *indices() { return indices_.data(); }
+  // Where lists are put as they are found, see CpuCandidates: for all batches, the memory of the gradients, before those are computed; for one group, a
+  // scratch that stays in a thread's cache.
+  int *lists_of_all() { return reinterpret_cast<int *>(gradients_.data()); }
+  int *lists_of_group(int group, unsigned thread) {
+    return &scratch_[static_cast<std::size_t>(thread) * scratch_size_] -
+           3 * static_cast<std::ptrdiff_t>(width_) * offsets_[static_cast<std::size_t>(group_begin(group))];
+  }
   const std::vector<Pass> &passes() const { return passes_; }
   int batch_count() const { return batch_count_; }
   int group_begin(int group) const { return group_first_batch_[static_cast<std::size_t>(group)]; }
@@ -63,6 +71,7 @@ private:
   void fill_group(const CellTable &table, int group, int pass_index);
 
   int width_;
+  unsigned threads_;
   CellTable table_{};
   int batch_count_ = 0;
   std::int64_t steps_ = 0;
@@ -75,6 +84,8 @@ private:
   HostArray<int> ids_, active_, offsets_, close_steps_, slots_;
   HostArray<int> indices_;
   HostArray<float> gradients_, records_;
+  HostArray<int> scratch_; // of each thread
+  std::size_t scratch_size_ = 0;
 };
 
 // Calls f(first, last) for each run of particles in a block of cells: its columns along z.

@@ -34,6 +34,8 @@ constexpr int spins_before_blocking = 500;
 
 } // namespace
 
+thread_local unsigned Workers::current_ = 0;
+
 Workers::Workers(unsigned thread_count, const loam_job_system &job_system)
     : thread_count_(thread_count), job_system_(job_system) {
   if (thread_count_ == 0) thread_count_ = std::thread::hardware_concurrency();
@@ -58,6 +60,9 @@ bool Workers::take_chunk(std::uint64_t seen) {
 }
 
 void Workers::help() {
+  // A job system may run the task at once, on the thread that asks for help: that thread has the loops to publish.
+  if (std::this_thread::get_id() == caller_) return;
+  current_ = joined_.fetch_add(1, std::memory_order_relaxed);
   while (open_.load(std::memory_order_acquire)) {
     const std::uint64_t seen = word_.load(std::memory_order_acquire);
     if (take_chunk(seen)) continue;
@@ -98,10 +103,13 @@ void Workers::run_loop(int chunks, ChunkFunction function, void *data) {
 }
 
 void Workers::run_session(void (*body)(void *), void *data) {
+  current_ = 0;
+  joined_.store(1, std::memory_order_relaxed);
   if (thread_count_ == 1) {
     body(data);
     return;
   }
+  caller_ = std::this_thread::get_id();
   open_.store(true, std::memory_order_release);
   std::exception_ptr failure;
   const auto run_body = [&] {

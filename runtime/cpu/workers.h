@@ -14,6 +14,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <thread>
 #include <type_traits>
 
 #include <loam/base.h>
@@ -42,6 +43,9 @@ public:
 
   static constexpr int max_chunks = (1 << 20) - 1;
 
+  // Inside a loop: which of the session's threads is running, from 0 to thread_count - 1. For scratch memory, never for results.
+  static unsigned current() { return current_; }
+
 private:
   using ChunkFunction = void (*)(void *data, int chunk);
   void run_session(void (*body)(void *), void *data);
@@ -56,7 +60,10 @@ private:
   std::atomic<ChunkFunction> function_{nullptr};
   std::atomic<void *> data_{nullptr};
   std::atomic<bool> open_{false};
+  std::thread::id caller_; // of the session
   alignas(64) std::atomic<int> done_{0};
+  std::atomic<unsigned> joined_{1}; // threads of the session so far
+  static thread_local unsigned current_;
 };
 
 } // namespace loam

@@ -54,7 +54,10 @@ LOAM_FN int count(Mask m) { return static_cast<int>(hn::CountTrue(FloatTag(), m.
 LOAM_FN unsigned mask_bits(Mask m) {
   std::uint8_t bytes[8] = {};
   hn::StoreMaskBits(FloatTag(), m.native, bytes);
-  return static_cast<unsigned>(bytes[0]) | (static_cast<unsigned>(bytes[1]) << 8);
+  if constexpr (Pack::width != 16) return bytes[0];
+  std::uint16_t word;
+  __builtin_memcpy(&word, bytes, sizeof word);
+  return word;
 }
 
 // For the neighbour search, on indices of the lanes' candidates. Bit l: the pair of `self` and index[l] belongs to self.
@@ -65,10 +68,18 @@ LOAM_FN unsigned owned_pairs(const int *index, int self) {
   const auto above = hn::Gt(other, own);
   return ~mask_bits({hn::RebindMask(FloatTag(), hn::Xor(even_sum, above))});
 }
+
 // Copies the entries whose bits are set to `to`, one after the other; up to a pack of others behind them.
 LOAM_FN void compress(const int *from, unsigned bits, int *to) {
   const hn::RebindToSigned<FloatTag> tag;
-  std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8)};
+  // One store of the size of the load behind it: the word then stays in a register.
+  std::uint8_t bytes[8] = {};
+  if constexpr (Pack::width == 16) {
+    const auto word = static_cast<std::uint16_t>(bits);
+    __builtin_memcpy(bytes, &word, sizeof word);
+  } else {
+    bytes[0] = static_cast<std::uint8_t>(bits);
+  }
   hn::StoreU(hn::Compress(hn::Load(tag, from), hn::LoadMaskBits(tag, bytes)), tag, to);
 }
 

@@ -62,6 +62,7 @@ LOAM_FN unsigned owned_pairs(const int *index, int self) {
   for (int l = 0; l < 4; ++l) bits |= (self < index[l]) == (((index[l] ^ self) & 1) == 0) ? 1u << l : 0u;
   return bits;
 }
+
 LOAM_FN void compress(const int *from, unsigned bits, int *to) {
   for (int l = 0; l < 4; ++l)
     if ((bits >> l & 1u) != 0) *to++ = from[l];

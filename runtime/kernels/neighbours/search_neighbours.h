@@ -51,12 +51,12 @@ struct FillNeighbours {
   const int *close_counts;
 
   template <class Team> LOAM_FN void operator()(Team &team, int i) const {
-    team.open_list(i, neighbour_counts[i], close_counts[i]);
+    auto list = team.open_list(i, neighbour_counts[i], close_counts[i]);
     for (auto packet : team.candidates(i)) {
       const CandidateTest::Found found = test(team, packet);
-      team.append(packet, found.near, found.close);
+      team.append(list, packet, found.near, found.close);
     }
-    team.close_list(i);
+    team.close_list(list);
   }
 };
 
