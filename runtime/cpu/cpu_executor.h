@@ -89,7 +89,7 @@ public:
   void fill_neighbours(const CellTable &table, const FillNeighbours &stage) {
     CpuCandidates views = candidates(table);
     const auto launch = table_->candidate[IndexOf<FillNeighbours, CandidateStages>::value];
-    if (table.material_count > 1) { // a run may hold particles of several groups
+    if (table.only_material < 0) { // a run may hold particles of several groups
       views.lists = order_.lists_of_all();
       in_chunks(table.particle_count, 512, [&](int first, int last) { launch(&stage, views, first, last); });
       in_chunks(order_.batch_count(), 16,

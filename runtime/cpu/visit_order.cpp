@@ -52,8 +52,8 @@ void VisitOrder::list_entries(const CellTable &table) {
       const std::uint64_t rank = (pass << 16) | static_cast<std::uint64_t>(0xffff - std::min(size, 0xffff));
       entries_[entry_count_++] = {(rank << 31) | static_cast<std::uint64_t>(block), block, material, size};
     };
-    if (table.material_count == 1) {
-      add(0, total);
+    if (table.only_material >= 0) {
+      add(table.only_material, total);
       continue;
     }
     std::fill(material_sizes_.begin(), material_sizes_.end(), 0);
@@ -124,7 +124,7 @@ void VisitOrder::fill_group(const CellTable &table, int group, int pass_index) {
     const auto for_each_particle = [&](auto &&f) {
       for_each_run(table, entry.block, [&](int first, int last) {
         for (int i = first; i < last; ++i)
-          if (table.material_count == 1 || static_cast<int>(table.materials[i]) == entry.material) f(i);
+          if (table.only_material >= 0 || static_cast<int>(table.materials[i]) == entry.material) f(i);
       });
     };
     for_each_particle([&](int i) { ++places[bin(i) + 1]; });
@@ -176,7 +176,7 @@ void VisitOrder::make_room() {
   // Prefetches may run past the end, which is harmless; loads do not.
   grow(indices_, steps * W);
   grow(gradients_, steps * 3 * W);
-  if (table_.material_count == 1) {
+  if (table_.only_material >= 0) {
     std::size_t most = 0;
     for (int group = 0; group < group_count_; ++group)
       most = std::max(most, static_cast<std::size_t>(offsets_[static_cast<std::size_t>(group_begin(group + 1))] -

@@ -12,6 +12,7 @@
 #include <new>
 
 #include "scene/error.h"
+#include "scene/query_tree.h"
 
 namespace loam {
 namespace {
@@ -92,15 +93,15 @@ std::size_t split_of(const std::vector<std::uint64_t> &keys, std::size_t first, 
   return below;
 }
 
-std::vector<BvhNode> build_nodes(const std::vector<std::uint64_t> &keys, const std::vector<BvhTriangle> &triangles) {
+std::vector<BinaryNode> build_binary(const std::vector<std::uint64_t> &keys, const std::vector<BvhTriangle> &triangles) {
   struct Range {
     std::size_t first, last;
     std::uint32_t parent;
     int side;
   };
   const Box empty;
-  const BvhNode blank{{empty.lower, empty.lower}, {empty.upper, empty.upper}, {BvhNode::leaf, BvhNode::leaf}};
-  std::vector<BvhNode> nodes;
+  const BinaryNode blank{{empty.lower, empty.lower}, {empty.upper, empty.upper}, {BinaryNode::leaf, BinaryNode::leaf}};
+  std::vector<BinaryNode> nodes;
   if (keys.size() == 1) {
     nodes.push_back(blank);
   } else {
@@ -110,7 +111,7 @@ std::vector<BvhNode> build_nodes(const std::vector<std::uint64_t> &keys, const s
       const Range range = stack.back();
       stack.pop_back();
       const bool is_leaf = range.first == range.last;
-      const std::uint32_t entry = is_leaf ? BvhNode::leaf | std::uint32_t(range.first) : std::uint32_t(nodes.size());
+      const std::uint32_t entry = is_leaf ? BinaryNode::leaf | std::uint32_t(range.first) : std::uint32_t(nodes.size());
       if (range.side >= 0) nodes[range.parent].child[range.side] = entry;
       if (is_leaf) continue;
       nodes.push_back(blank);
@@ -125,8 +126,8 @@ std::vector<BvhNode> build_nodes(const std::vector<std::uint64_t> &keys, const s
     for (int side = 0; side < (n == 0 ? children_of_root : 2); ++side) {
       const std::uint32_t child = nodes[n].child[side];
       Box box;
-      if ((child & BvhNode::leaf) != 0) {
-        const BvhTriangle &t = triangles[child & ~BvhNode::leaf];
+      if ((child & BinaryNode::leaf) != 0) {
+        const BvhTriangle &t = triangles[child & ~BinaryNode::leaf];
         box.include(t.a);
         box.include(t.b);
         box.include(t.c);
@@ -214,7 +215,8 @@ BoundingVolumeHierarchy build_bounding_volume_hierarchy(const TriangleMesh &mesh
     BoundingVolumeHierarchy hierarchy;
     std::vector<std::uint64_t> keys;
     hierarchy.triangles = sorted_triangles(mesh, keys);
-    hierarchy.nodes = build_nodes(keys, hierarchy.triangles);
+    hierarchy.binary = build_binary(keys, hierarchy.triangles);
+    build_query_tree(hierarchy);
     build_features(hierarchy);
     return hierarchy;
   } catch (const std::bad_alloc &) {

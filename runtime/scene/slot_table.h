@@ -23,7 +23,7 @@ public:
   std::uint64_t add(T object) {
     const std::uint64_t id = next_id();
     const auto index = static_cast<std::size_t>(id & 0xffffffffu);
-    if (index == slots_.size()) slots_.push_back({T(), 1, false});
+    if (index == slots_.size()) slots_.push_back({T(), 1});
     slots_[index].object = std::move(object);
     slots_[index].in_use = true;
     return id;
@@ -52,7 +52,10 @@ public:
     Slot &slot = slots_[index_of(id, argument)];
     slot.object = T();
     slot.in_use = false;
-    if (++slot.generation == 0) slot.generation = 1;
+    if (slot.generation == last_generation)
+      slot.retired = true; // another object in it would bear an id that was given out before
+    else
+      ++slot.generation;
   }
   std::size_t size() const { return slots_.size(); }
   T *at_index(std::size_t index) { return slots_[index].in_use ? &slots_[index].object : nullptr; }
@@ -61,11 +64,12 @@ private:
   struct Slot {
     T object;
     std::uint16_t generation;
-    bool in_use;
+    bool in_use = false, retired = false;
   };
+  static constexpr std::uint16_t last_generation = 0xffff;
   std::size_t free_slot() const {
     for (std::size_t i = 0; i < slots_.size(); ++i)
-      if (!slots_[i].in_use) return i;
+      if (!slots_[i].in_use && !slots_[i].retired) return i;
     return slots_.size();
   }
   std::uint64_t make_id(std::size_t index, std::uint16_t generation) const {

@@ -35,7 +35,7 @@ double solid_angle(const BvhTriangle &t, Vec3<double> point) {
 } // namespace
 
 WindingNumber::WindingNumber(const TriangleMesh &mesh) : hierarchy_(build_bounding_volume_hierarchy(mesh)) {
-  const BvhNode &root = hierarchy_.nodes.front();
+  const BinaryNode &root = hierarchy_.binary.front();
   lower_ = {std::min(root.lower[0].x, root.lower[1].x), std::min(root.lower[0].y, root.lower[1].y),
             std::min(root.lower[0].z, root.lower[1].z)};
   upper_ = {std::max(root.upper[0].x, root.upper[1].x), std::max(root.upper[0].y, root.upper[1].y),
@@ -53,9 +53,9 @@ WindingNumber::WindingNumber(const TriangleMesh &mesh) : hierarchy_(build_boundi
 }
 
 void WindingNumber::build_dipoles() {
-  dipoles_.resize(hierarchy_.nodes.size() * 2);
-  for (std::size_t n = hierarchy_.nodes.size(); n-- > 0;) { // children come after their parents
-    const BvhNode &node = hierarchy_.nodes[n];
+  dipoles_.resize(hierarchy_.binary.size() * 2);
+  for (std::size_t n = hierarchy_.binary.size(); n-- > 0;) { // children come after their parents
+    const BinaryNode &node = hierarchy_.binary[n];
     for (int side = 0; side < 2; ++side) {
       Dipole &dipole = dipoles_[2 * n + std::size_t(side)];
       if (!(node.lower[side].x <= node.upper[side].x)) continue; // the empty child of a single triangle
@@ -65,8 +65,8 @@ void WindingNumber::build_dipoles() {
         dipole.total_area += total_area;
         moment = moment + total_area * centre;
       };
-      if ((node.child[side] & BvhNode::leaf) != 0) {
-        const BvhTriangle &t = hierarchy_.triangles[node.child[side] & ~BvhNode::leaf];
+      if ((node.child[side] & BinaryNode::leaf) != 0) {
+        const BvhTriangle &t = hierarchy_.triangles[node.child[side] & ~BinaryNode::leaf];
         const Vec3<double> a = widened(t.a), b = widened(t.b), c = widened(t.c);
         const Vec3<double> area = 0.5 * cross(b - a, c - a);
         include(area, length(area), (1.0 / 3.0) * (a + b + c));
@@ -87,12 +87,12 @@ void WindingNumber::build_dipoles() {
 
 double WindingNumber::at(Vec3<double> point) const {
   double sum = 0;
-  std::uint32_t stack[64]; // see BallQuery for the depth
+  std::uint32_t stack[64]; // a level leaves one entry; at most 58 levels, see BallQuery
   int size = 0;
   stack[size++] = 0;
   while (size > 0) {
     const std::size_t n = stack[--size];
-    const BvhNode &node = hierarchy_.nodes[n];
+    const BinaryNode &node = hierarchy_.binary[n];
     for (int side = 0; side < 2; ++side) {
       const Dipole &dipole = dipoles_[2 * n + std::size_t(side)];
       if (dipole.total_area == 0) continue;
@@ -100,8 +100,8 @@ double WindingNumber::at(Vec3<double> point) const {
       const double distance_squared = dot(away, away);
       if (distance_squared > dipole.far_squared) {
         sum += dot(dipole.area, away) / (distance_squared * std::sqrt(distance_squared));
-      } else if ((node.child[side] & BvhNode::leaf) != 0) {
-        sum += solid_angle(hierarchy_.triangles[node.child[side] & ~BvhNode::leaf], point);
+      } else if ((node.child[side] & BinaryNode::leaf) != 0) {
+        sum += solid_angle(hierarchy_.triangles[node.child[side] & ~BinaryNode::leaf], point);
       } else {
         stack[size++] = node.child[side];
       }
@@ -117,7 +117,7 @@ double WindingNumber::exactly_at(Vec3<double> point) const {
 }
 
 float WindingNumber::distance(Vec3<float> point, float limit) const {
-  return distance_to_mesh(hierarchy_.nodes.data(), hierarchy_.triangles.data(), point, limit);
+  return distance_to_mesh(hierarchy_.nodes.data(), hierarchy_.packets.data(), point, limit);
 }
 
 } // namespace loam

@@ -6,6 +6,7 @@
 #include "cpu/kernel_table.h"
 #include "scene/checks.h"
 #include "scene/material.h"
+#include "scene/pose.h"
 #include "scene/sampling.h"
 
 namespace loam {
@@ -133,7 +134,15 @@ void loam_world::step(float seconds) {
   for (std::size_t i = 0; i < colliders_.size(); ++i)
     if (const Collider *c = colliders_.at_index(i); c != nullptr)
       input_.colliders.push_back({c->kind, c->friction, c->pose, c->target, c->mesh});
-  backend_->step(input_);
+  try {
+    backend_->step(input_);
+  } catch (const Error &) {
+    // Colliders stop with the particles, at the end of the last whole substep.
+    const double share = static_cast<double>(backend_->statistics().substeps_done) / input_.substeps;
+    for (std::size_t i = 0; i < colliders_.size(); ++i)
+      if (Collider *c = colliders_.at_index(i); c != nullptr) c->pose = interpolate(c->pose, c->target, share);
+    throw;
+  }
   for (std::size_t i = 0; i < colliders_.size(); ++i)
     if (Collider *c = colliders_.at_index(i); c != nullptr) c->pose = c->target;
 }
@@ -225,13 +234,18 @@ loam_collider_report loam_world::collider_report(loam_collider_id id) const { re
 
 // ----------------------------------------------------------------------------------------------------- particles ---
 
+void loam_world::check_room(std::uint64_t count) const {
+  const std::uint64_t have = backend_->particle_count(), want = have + count;
+  if (want > def_.particle_capacity || want < count) // the sum may wrap around
+    throw Error(LOAM_ERROR_CAPACITY, format("%llu particles would be needed; particle_capacity is %llu",
+                                            static_cast<unsigned long long>(want < count ? count : want),
+                                            static_cast<unsigned long long>(def_.particle_capacity)));
+}
+
 void loam_world::add_particles(loam_material_id material, const char *argument, NewParticles particles, bool pinned) {
   Material &m = materials_.at(material, argument);
-  const std::uint64_t have = backend_->particle_count(), want = have + particles.count;
-  if (want > def_.particle_capacity)
-    throw Error(LOAM_ERROR_CAPACITY,
-                format("%llu particles would be needed; particle_capacity is %llu", static_cast<unsigned long long>(want),
-                       static_cast<unsigned long long>(def_.particle_capacity)));
+  const std::uint64_t have = backend_->particle_count();
+  check_room(particles.count);
   particles.material = static_cast<std::uint32_t>(material & 0xffffffffu);
   particles.first_id = static_cast<std::uint32_t>(have);
   particles.inverse_mass = pinned ? 0.0f : 1.0f / (m.def.density * particles.volume);
@@ -264,6 +278,7 @@ std::uint32_t loam_world::add(const loam_particles_def &def) {
   (void)materials_.at(def.material, "material");
   check_reserved("reserved", def.reserved);
   check_choice("pinned", def.pinned, 1);
+  check_room(def.count); // before the arrays are read
   const double r = static_cast<double>(def_.kernel_radius);
   if (def.count > 0) check_pointer(def.positions, "positions");
   if (def.volume != 0.0f) check_range("volume", static_cast<double>(def.volume), 1e-24, 1e18);

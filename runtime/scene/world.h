@@ -59,6 +59,7 @@ private:
     loam_collider_report report{};
   };
   void check_unmapped() const;
+  void check_room(std::uint64_t count) const; // for so many more particles
   void send_materials();
   void add_particles(loam_material_id material, const char *argument, loam::NewParticles particles, bool pinned);
 

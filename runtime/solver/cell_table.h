@@ -28,7 +28,8 @@ struct CellTable {
   CellGrid grid;
   Colouring colouring;
   int particle_count;
-  int material_count; // 1: `materials` need not be looked at
+  int material_count;
+  int only_material; // the one that all particles are of, so that `materials` need not be looked at; -1 if there are several
   const std::uint32_t *keys;
   const int *starts;
   const float *x, *y, *z;

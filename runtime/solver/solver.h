@@ -13,6 +13,7 @@
 #include "kernels/neighbours/sort_stages.h"
 #include "scene/error.h"
 #include "solver/backend.h"
+#include "solver/collider_motion.h"
 #include "solver/stages.h"
 
 namespace loam {
@@ -41,21 +42,22 @@ private:
     Array<Row> positions, velocities;
     Array<float> strains, histories, log_volumes, rest_volumes;
     Array<std::uint32_t> ids, materials;
+    Array<float> free_distances; // while there are meshes
     ParticleArrays arrays() {
-      return {positions.data(),   velocities.data(),   strains.data(), histories.data(),
-              log_volumes.data(), rest_volumes.data(), ids.data(),     materials.data()};
+      return {positions.data(),    velocities.data(), strains.data(),   histories.data(),     log_volumes.data(),
+              rest_volumes.data(), ids.data(),        materials.data(), free_distances.data()};
     }
     std::uint64_t bytes() const {
       return positions.bytes() + velocities.bytes() + strains.bytes() + histories.bytes() + log_volumes.bytes() +
-             rest_volumes.bytes() + ids.bytes() + materials.bytes();
+             rest_volumes.bytes() + ids.bytes() + materials.bytes() + free_distances.bytes();
     }
   };
   struct Mesh {
     Array<BvhNode> nodes;
-    Array<BvhTriangle> triangles;
+    Array<TrianglePacket> packets;
     Array<BvhFeatures> features;
     Array<Vec3<float>> ring;
-    int triangle_count = 0;
+    float extent = 0; // the greatest distance of a vertex from the mesh's origin
     bool in_use = false;
   };
 
@@ -63,7 +65,8 @@ private:
     return {executor_.template array<Row>(),           executor_.template array<Row>(),
             executor_.template array<float>(),         executor_.template array<float>(),
             executor_.template array<float>(),         executor_.template array<float>(),
-            executor_.template array<std::uint32_t>(), executor_.template array<std::uint32_t>()};
+            executor_.template array<std::uint32_t>(), executor_.template array<std::uint32_t>(),
+            executor_.template array<float>()};
   }
   void reserve_storage(ParticleStorage &storage, std::size_t rows);
   void reserve_histories();
@@ -78,6 +81,7 @@ private:
   void compile_schedule(bool colliders);
   void make_grid();
   void prepare_contacts(const StepInput &input, std::uint32_t index);
+  void prepare_free_distances();
   void iterate(std::uint32_t iterations);
   void solve_in_turn();
   void solve_at_once();
@@ -88,7 +92,7 @@ private:
     std::visit([&](const auto &law) { f(law, limit_of(law)); }, materials_[static_cast<std::size_t>(material)].law);
   }
   template <class Law> static StrainLimit limit_of(const Law &) { return strain_limit(Law::greatest_strain); }
-  void lap(int stage, std::uint64_t items) { schedule_.record(stage, executor_.lap(), items); }
+  void lap(int stage, std::uint64_t items) { executor_.lap(schedule_, stage, items); }
   std::uint64_t particles() const { return static_cast<std::uint64_t>(count_); }
 
   SolverSettings settings_;
@@ -110,7 +114,9 @@ private:
   Array<float> corrections_, densities_;
   Array<Row> jacobi_rows_[3];
   std::vector<Mesh> meshes_;
-  std::vector<ColliderView> views_; // of this substep
+  std::vector<ColliderView> views_, views_before_; // of this substep and the one before
+  ColliderMotion collider_motion_;
+  bool free_distances_hold_ = false; // what they say was true at the end of views_before_
   Array<ColliderView> collider_views_;
   Array<Contact> contacts_;
   int contact_count_ = 0;
@@ -195,21 +201,25 @@ template <class Executor> void Solver<Executor>::set_materials(const std::vector
   for (const SolverMaterial &material : materials)
     std::visit([&](const auto &law) { history = history || std::remove_cvref_t<decltype(law)>::has_history; }, material.law);
   if (history && !histories_in_use_) {
-    histories_in_use_ = true;
     const std::size_t rows = spare_row_ + Executor::spare_rows(material_capacity_);
-    reserve_storage(now_, rows);
-    reserve_storage(other_, rows);
+    now_.histories.reserve(rows);
+    other_.histories.reserve(rows);
+    histories_in_use_ = true; // only now: memory may have been refused
   }
   materials_ = materials;
   schedule_is_current_ = false;
 }
 
 template <class Executor> int Solver<Executor>::add_mesh(const BoundingVolumeHierarchy &mesh) {
-  Mesh stored = {executor_.template array<BvhNode>(),     executor_.template array<BvhTriangle>(),
-                 executor_.template array<BvhFeatures>(), executor_.template array<Vec3<float>>(),
-                 static_cast<int>(mesh.triangles.size()), true};
+  free_distances_hold_ = false;
+  Mesh stored = {executor_.template array<BvhNode>(),
+                 executor_.template array<TrianglePacket>(),
+                 executor_.template array<BvhFeatures>(),
+                 executor_.template array<Vec3<float>>(),
+                 ColliderMotion::extent_of(mesh),
+                 true};
   copy_in(stored.nodes, mesh.nodes);
-  copy_in(stored.triangles, mesh.triangles);
+  copy_in(stored.packets, mesh.packets);
   copy_in(stored.features, mesh.features);
   copy_in(stored.ring, mesh.ring);
   for (std::size_t i = 0; i < meshes_.size(); ++i)
@@ -222,9 +232,10 @@ template <class Executor> int Solver<Executor>::add_mesh(const BoundingVolumeHie
 }
 
 template <class Executor> void Solver<Executor>::remove_mesh(int mesh) {
+  free_distances_hold_ = false;
   Mesh &stored = meshes_[static_cast<std::size_t>(mesh)];
   stored.nodes.free();
-  stored.triangles.free();
+  stored.packets.free();
   stored.features.free();
   stored.ring.free();
   stored.in_use = false;
@@ -251,6 +262,7 @@ template <class Executor> void Solver<Executor>::add_particles(const NewParticle
   executor_.set(now_.log_volumes.data() + at, count, 0.0f);
   executor_.set(now_.strains.data() + 6 * at, 6 * count, 0.0f);
   if (histories_in_use_) executor_.set(now_.histories.data() + at, count, 0.0f);
+  if (now_.free_distances.capacity() > 0) executor_.set(now_.free_distances.data() + at, count, 0.0f);
   count_ += count;
 }
 
@@ -290,7 +302,7 @@ template <class Executor> std::vector<MemoryUse> Solver<Executor>::memory() cons
   }
   std::uint64_t colliders = collider_views_.bytes() + contacts_.bytes();
   for (const Mesh &mesh : meshes_)
-    colliders += mesh.nodes.bytes() + mesh.triangles.bytes() + mesh.features.bytes() + mesh.ring.bytes();
+    colliders += mesh.nodes.bytes() + mesh.packets.bytes() + mesh.features.bytes() + mesh.ring.bytes();
   if (colliders > 0) uses.push_back({"colliders", colliders});
   if (densities_.bytes() > 0) uses.push_back({"mapped densities", densities_.bytes()});
   return uses;

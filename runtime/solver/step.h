@@ -162,8 +162,9 @@ inline Pose interpolate(const Pose &a, const Pose &b, double t) {
 
 template <class Executor> void Solver<Executor>::prepare_contacts(const StepInput &input, std::uint32_t index) {
   contact_count_ = 0;
-  if (input.colliders.empty()) return;
+  views_before_.swap(views_);
   views_.clear();
+  collider_motion_ = {};
   for (const ColliderState &collider : input.colliders) {
     ColliderView view = {};
     view.kind = collider.kind;
@@ -173,27 +174,51 @@ template <class Executor> void Solver<Executor>::prepare_contacts(const StepInpu
     if (collider.mesh >= 0) {
       Mesh &mesh = meshes_[static_cast<std::size_t>(collider.mesh)];
       view.nodes = mesh.nodes.data();
-      view.triangles = mesh.triangles.data();
+      view.packets = mesh.packets.data();
       view.features = mesh.features.data();
       view.ring = mesh.ring.data();
-      view.triangle_count = mesh.triangle_count;
+      collider_motion_.include(view, mesh.extent);
+    } else {
+      collider_motion_.include_plane(view);
     }
     views_.push_back(view);
   }
+  prepare_free_distances();
+  if (views_.empty()) return;
   copy_in(collider_views_, views_);
 
-  const float r = settings_.kernel_radius;
+  const float r = settings_.kernel_radius, stand_off = 0.5f * r;
+  const FreeDistances free_distances = {now_.free_distances.data(), collider_motion_.enough(stand_off + r) + 0.01f * r};
   for (int attempt = 0; attempt < 2; ++attempt) {
     executor_.set(counters_.data() + 2, 1, 0);
     executor_.for_each(count_, FindContacts{now_.positions.data(), now_.velocities.data(), collider_views_.data(),
-                                            static_cast<int>(views_.size()), h_, 0.5f * r, r, contacts_.data(),
-                                            static_cast<int>(contacts_.capacity()), counters_.data() + 2});
+                                            static_cast<int>(views_.size()), h_, stand_off, r, contacts_.data(),
+                                            static_cast<int>(contacts_.capacity()), counters_.data() + 2, free_distances});
     contact_count_ = executor_.read(counters_.data() + 2);
     if (static_cast<std::size_t>(contact_count_) <= contacts_.capacity()) break;
     const auto found = static_cast<std::size_t>(contact_count_);
     contacts_.reserve(std::min(found + found / 4 + 256, static_cast<std::size_t>(settings_.particle_capacity)));
   }
   lap(schedule_.find_contacts, particles());
+}
+
+// Free distances are held while there are meshes, and forgotten where a collider came, went or was placed.
+template <class Executor> void Solver<Executor>::prepare_free_distances() {
+  const bool meshes = std::any_of(views_.begin(), views_.end(), [](const ColliderView &view) { return view.nodes != nullptr; });
+  if (!meshes || !settings_.keep_free_distances) {
+    now_.free_distances.free();
+    other_.free_distances.free();
+  } else {
+    if (now_.free_distances.capacity() == 0) { // both or none: memory may be refused
+      Array<float> now = executor_.template array<float>(), other = executor_.template array<float>();
+      now.reserve(static_cast<std::size_t>(settings_.particle_capacity));
+      other.reserve(static_cast<std::size_t>(settings_.particle_capacity));
+      now_.free_distances.swap(now);
+      other_.free_distances.swap(other);
+    }
+    if (!free_distances_hold_ || !go_on(views_before_, views_)) executor_.set(now_.free_distances.data(), count_, 0.0f);
+  }
+  free_distances_hold_ = false; // until this substep is over: it may fail
 }
 
 // Residual and virial, on the velocities of the last iteration. The terms go where the other copy of the strains is: 4 of its 6 floats.

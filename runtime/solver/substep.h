@@ -47,6 +47,12 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
     });
     lap(stage, particles());
   }
+  if (now_.free_distances.capacity() > 0) {
+    ex.for_each(count_, SpendFreeDistances{now_.free_distances.data(), now_.positions.data(), now_.velocities.data(), h_,
+                                           collider_motion_.greatest()});
+    free_distances_hold_ = true;
+    lap(schedule_.find_contacts, 0);
+  }
   ex.for_each(count_,
               Advance{now_.positions.data(), now_.velocities.data(), now_.log_volumes.data(), now_.rest_volumes.data(), h_});
   lap(schedule_.advance, particles());

@@ -16,17 +16,25 @@ template <class T> struct ClosestPoint {
   int feature; // 0 to 2 edges ab, bc, ca; 3 to 5 vertices a, b, c; 6 inside
 };
 
-// Takes the closest point of the edge from a to b if it is closer than the best so far.
+// Takes the closest point of the edge from a to b, if the origin is outside of it, where it is closer than the best so far. Without
+// branches: which edge is closest is nearly random, and so the loop over a packet's lanes becomes vector code.
 template <class T>
-LOAM_FN void closer_point_on_edge(Vec3<T> a, Vec3<T> edge, int from, int to, int own, ClosestPoint<T> &best) {
+LOAM_FN void closer_point_on_edge(bool outside, Vec3<T> a, Vec3<T> edge, int from, int to, int own, ClosestPoint<T> &best) {
   const T along = T(0) - dot(a, edge);
   const T whole = dot(edge, edge);
   const bool before = !(along > T(0));
   const bool beyond = along >= whole;
-  const T share = before ? T(0) : beyond ? T(1) : along / whole;
+  const T quotient = along / whole;
+  const T share = before ? T(0) : beyond ? T(1) : quotient;
   const Vec3<T> point = a + share * edge;
   const T distance_squared = dot(point, point);
-  if (distance_squared < best.distance_squared) best = {point, distance_squared, before ? from : beyond ? to : own};
+  const bool closer = outside && distance_squared < best.distance_squared;
+  const int feature = before ? from : beyond ? to : own;
+  best.point.x = closer ? point.x : best.point.x;
+  best.point.y = closer ? point.y : best.point.y;
+  best.point.z = closer ? point.z : best.point.z;
+  best.distance_squared = closer ? distance_squared : best.distance_squared;
+  best.feature = closer ? feature : best.feature;
 }
 
 // The triangle's vertices are given relative to the query point; the normal has unit length.
@@ -35,14 +43,17 @@ template <class T> LOAM_FN ClosestPoint<T> closest_point_on_triangle(Vec3<T> a, 
   const bool outside_ab = dot(cross(normal, ab), a) > T(0);
   const bool outside_bc = dot(cross(normal, bc), b) > T(0);
   const bool outside_ca = dot(cross(normal, ca), c) > T(0);
-  if (!outside_ab && !outside_bc && !outside_ca) {
-    const T height = dot(normal, a);
-    return {height * normal, height * height, 6};
-  }
   ClosestPoint<T> best = {a, T(1e30), 3};
-  if (outside_ab) closer_point_on_edge(a, ab, 3, 4, 0, best);
-  if (outside_bc) closer_point_on_edge(b, bc, 4, 5, 1, best);
-  if (outside_ca) closer_point_on_edge(c, ca, 5, 3, 2, best);
+  closer_point_on_edge(outside_ab, a, ab, 3, 4, 0, best);
+  closer_point_on_edge(outside_bc, b, bc, 4, 5, 1, best);
+  closer_point_on_edge(outside_ca, c, ca, 5, 3, 2, best);
+  const bool inside = !outside_ab && !outside_bc && !outside_ca;
+  const T height = dot(normal, a);
+  best.point.x = inside ? height * normal.x : best.point.x;
+  best.point.y = inside ? height * normal.y : best.point.y;
+  best.point.z = inside ? height * normal.z : best.point.z;
+  best.distance_squared = inside ? height * height : best.distance_squared;
+  best.feature = inside ? 6 : best.feature;
   return best;
 }
 

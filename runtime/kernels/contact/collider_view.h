@@ -7,20 +7,21 @@
 
 namespace loam {
 
-// A node of the bounding volume hierarchy over a mesh's triangles. A child index with the top bit set is a triangle. The root is
-// node 0; a mesh of one triangle has a root whose second child is an empty box.
-struct BvhNode {
-  static constexpr std::uint32_t leaf = 0x80000000u;
-  Vec3<float> lower[2]; // boxes of the two children
-  Vec3<float> upper[2];
-  std::uint32_t child[2];
+// Four triangles that lie together, a lane each; lanes from `count` on repeat the first. Lane k is triangle `first + k`.
+struct TrianglePacket {
+  static constexpr int width = 4;
+  float a[3][width], b[3][width], c[3][width]; // x, y, z of the vertices
+  float normal[3][width];
+  std::uint32_t first, count;
 };
 
-// The unit normal is worked out in double precision when the mesh is made: the cross product of a sliver's edges would have no
-// correct digit left in float.
-struct BvhTriangle {
-  Vec3<float> a, b, c;
-  Vec3<float> normal;
+// A node of the bounding volume hierarchy over a mesh's packets: the boxes of four children, which are nodes, packets (top bit set), or
+// missing: then the box is empty, at an infinite distance from everything. The root is node 0.
+struct alignas(64) BvhNode {
+  static constexpr int width = 4;
+  static constexpr std::uint32_t leaf = 0x80000000u;
+  float centre[3][width], half[3][width]; // x, y, z of the middles and of the half extents
+  std::uint32_t child[width];
 };
 
 // Edges and vertices of the mesh, each owned by one of the triangles that share it. Features 0 to 2 of a triangle are its edges ab,
@@ -49,10 +50,9 @@ struct ColliderView {
   Pose start, end; // at the start and the end of the substep
   // Of a mesh; null for a plane.
   const BvhNode *nodes;
-  const BvhTriangle *triangles;
+  const TrianglePacket *packets;
   const BvhFeatures *features; // one a triangle
   const Vec3<float> *ring;
-  int triangle_count;
 };
 
 // True if the collider does not move in this substep. Its displacements are then exactly zero, not the difference of two rounded

@@ -14,10 +14,13 @@
 //
 // The half space is placed where the collider will be at the end of the substep. If the particle starts nearer than the stand-off, it
 // must not come nearer still, and moves out slowly: at once would be a velocity, and sand would pop instead of rest.
+//
+// Most particles are far from every collider for many substeps: see free_distance.h.
 #pragma once
 
 #include <loam/collider.h>
 
+#include "kernels/contact/free_distance.h"
 #include "kernels/contact/mesh_query.h"
 #include "math/atomics.h"
 
@@ -74,19 +77,22 @@ struct FindContacts {
   Contact *contacts;
   int capacity;
   int *count; // zero before; counts on past the capacity, for the host to make room and run again
+  FreeDistances free_distances = {nullptr, 0.0f};
 
   LOAM_FN void operator()(int particle) const {
+    if (free_distances.suffices(particle)) return;
     const Vec3<float> x = xyz(positions[particle]);
     if (velocities[particle].w == 0.0f || !is_finite(x)) return;
     PlaneList list;
-    float clearance = stand_off + reach;
+    float clearance = stand_off + reach, free = 1e30f;
     for (int i = 0; i < collider_count; ++i) {
       if (colliders[i].kind == LOAM_COLLIDER_PLANE) {
-        find_plane(i, x, list, clearance);
+        find_plane(i, x, list, clearance, free);
       } else {
-        find_mesh(i, x, expected_reach(particle), list, clearance);
+        find_mesh(i, x, expected_reach(particle), list, clearance, free);
       }
     }
+    free_distances.keep(particle, free);
     if (list.count == 0) return;
     const int slot = atomic_add(count, 1);
     if (slot >= capacity) return;
@@ -128,16 +134,17 @@ private:
     return plane;
   }
 
-  LOAM_FN void find_plane(int index, Vec3<float> x, PlaneList &list, float &clearance) const {
+  LOAM_FN void find_plane(int index, Vec3<float> x, PlaneList &list, float &clearance, float &free) const {
     const ColliderView &collider = colliders[index];
     const Vec3<float> local = to_local(collider.start, x);
     const Vec3<float> shift = carried(collider, local);
     const ContactPlane plane = plane_at(collider, {local.x, 0.0f, local.z}, {0.0f, 1.0f, 0.0f}, local.y, shift);
     clearance = minimum(clearance, local.y - length(shift));
+    free = minimum(free, local.y - FreeDistances::rounding(collider, x, local));
     if (plane.gap < reach) list.insert(plane, index);
   }
 
-  LOAM_FN void find_mesh(int index, Vec3<float> x, float expected, PlaneList &list, float &clearance) const {
+  LOAM_FN void find_mesh(int index, Vec3<float> x, float expected, PlaneList &list, float &clearance, float &free) const {
     const ColliderView &collider = colliders[index];
     const Vec3<float> local = to_local(collider.start, x);
     const Vec3<float> shift = carried(collider, local);
@@ -145,27 +152,39 @@ private:
     const float near_squared = near * near;
 
     ClosestPoint<float> nearest = {{0.0f, 0.0f, 0.0f}, far * far, -1};
-    int nearest_triangle = 0;
+    const TrianglePacket *nearest_packet = nullptr;
+    int nearest_lane = 0;
     bool nearest_is_listed = false;
     float radius_squared = far * far; // shrinks to the nearest point so far, but not below `near`
-    BallQuery query(collider.nodes, local);
+    float out_of_reach_squared = 1e30f;
+    BallQuery query(collider.nodes, local, free_distances.look_squared());
     for (int i = query.next(radius_squared); i >= 0; i = query.next(radius_squared)) {
-      const BvhTriangle &t = collider.triangles[i];
-      const ClosestPoint<float> closest = closest_point_on_triangle(t.a - local, t.b - local, t.c - local, t.normal);
-      if (!(closest.distance_squared < radius_squared)) continue;
-      const bool listed = closest.distance_squared < near_squared && is_minimum(collider, i, closest, local);
-      if (closest.distance_squared < nearest.distance_squared) {
-        nearest = closest;
-        nearest_triangle = i;
-        nearest_is_listed = listed;
-        radius_squared = maximum(near_squared, closest.distance_squared);
+      const TrianglePacket &packet = collider.packets[i];
+      const PacketPoints points = closest_points(packet, local);
+      const int count = static_cast<int>(packet.count);
+      for (int k = 0; k < count; ++k) {
+        out_of_reach_squared = minimum(out_of_reach_squared, points.distance_squared[k]);
+        if (!(points.distance_squared[k] < radius_squared)) continue;
+        const ClosestPoint<float> closest = points.at(k);
+        const bool listed = closest.distance_squared < near_squared &&
+                            is_minimum(collider, static_cast<int>(packet.first) + k, closest, local);
+        if (closest.distance_squared < nearest.distance_squared) {
+          nearest = closest;
+          nearest_packet = &packet;
+          nearest_lane = k;
+          nearest_is_listed = listed;
+          radius_squared = maximum(near_squared, closest.distance_squared);
+          query.open_squared = 0.0f; // how much farther the next surface is does not matter any more
+        }
+        if (listed) add(index, packet, k, closest, local, shift, false, list);
       }
-      if (listed) add(index, i, closest, local, shift, false, list);
     }
+    free = minimum(free, square_root(minimum(out_of_reach_squared, query.unvisited_squared)) -
+                             FreeDistances::rounding(collider, x, local));
     if (nearest.feature < 0) return;
     clearance = minimum(clearance, square_root(nearest.distance_squared) - length(shift));
     // The nearest point is a minimum whatever rounding made of its feature.
-    if (!nearest_is_listed) add(index, nearest_triangle, nearest, local, shift, true, list);
+    if (!nearest_is_listed) add(index, *nearest_packet, nearest_lane, nearest, local, shift, true, list);
   }
 
   LOAM_FN static bool is_minimum(const ColliderView &collider, int triangle, const ClosestPoint<float> &closest,
@@ -182,16 +201,17 @@ private:
     return true;
   }
 
-  LOAM_FN void add(int index, int triangle, const ClosestPoint<float> &closest, Vec3<float> local, Vec3<float> shift,
-                   bool even_if_out_of_reach, PlaneList &list) const {
+  LOAM_FN void add(int index, const TrianglePacket &packet, int lane, const ClosestPoint<float> &closest, Vec3<float> local,
+                   Vec3<float> shift, bool even_if_out_of_reach, PlaneList &list) const {
     const ColliderView &collider = colliders[index];
     const float distance = square_root(closest.distance_squared);
     Vec3<float> normal;
     if (distance > 0.05f * stand_off) {
       normal = (-1.0f / distance) * closest.point;
     } else { // too near for a direction: the triangle's own, on the particle's side; in front if it lies in the surface
-      const BvhTriangle &t = collider.triangles[triangle];
-      normal = dot(t.normal, local - t.a) < 0.0f ? -1.0f * t.normal : t.normal;
+      const Vec3<float> own = {packet.normal[0][lane], packet.normal[1][lane], packet.normal[2][lane]};
+      const Vec3<float> vertex = {packet.a[0][lane], packet.a[1][lane], packet.a[2][lane]};
+      normal = dot(own, local - vertex) < 0.0f ? -1.0f * own : own;
     }
     const ContactPlane plane = plane_at(collider, local + closest.point, normal, distance, shift);
     if (plane.gap < reach || even_if_out_of_reach) list.insert(plane, index);

@@ -6,46 +6,112 @@
 
 namespace loam {
 
-LOAM_FN float distance_squared_to_box(Vec3<float> lower, Vec3<float> upper, Vec3<float> point) {
-  const float x = maximum(maximum(lower.x - point.x, point.x - upper.x), 0.0f);
-  const float y = maximum(maximum(lower.y - point.y, point.y - upper.y), 0.0f);
-  const float z = maximum(maximum(lower.z - point.z, point.z - upper.z), 0.0f);
-  return x * x + (y * y + z * z);
+// What closest_point_on_triangle() says of each triangle of a packet.
+struct PacketPoints {
+  static constexpr int width = TrianglePacket::width;
+  float x[width], y[width], z[width], distance_squared[width];
+  int feature[width];
+
+  LOAM_FN ClosestPoint<float> at(int lane) const {
+    return {{x[lane], y[lane], z[lane]}, distance_squared[lane], feature[lane]};
+  }
+};
+
+LOAM_FN PacketPoints closest_points(const TrianglePacket &packet, Vec3<float> point) {
+  PacketPoints points;
+  for (int k = 0; k < TrianglePacket::width; ++k) {
+    const auto vertex = [&](const float(&v)[3][TrianglePacket::width]) {
+      return Vec3<float>{v[0][k] - point.x, v[1][k] - point.y, v[2][k] - point.z};
+    };
+    const ClosestPoint<float> closest =
+        closest_point_on_triangle(vertex(packet.a), vertex(packet.b), vertex(packet.c),
+                                  Vec3<float>{packet.normal[0][k], packet.normal[1][k], packet.normal[2][k]});
+    points.x[k] = closest.point.x;
+    points.y[k] = closest.point.y;
+    points.z[k] = closest.point.z;
+    points.distance_squared[k] = closest.distance_squared;
+    points.feature[k] = closest.feature;
+  }
+  return points;
 }
 
-// Visits the triangles whose boxes lie within a distance that may shrink on the way, nearer boxes first. The tree is a binary radix
-// tree over 30-bit codes with the index (under 2^28) as tie-break, so at most 58 deep, and a level leaves one entry at most.
+// Visits the packets whose boxes lie within a distance that may shrink on the way, nearer boxes first. The tree has four children a
+// node and stands for a binary radix tree over 30-bit codes with the index (under 2^28) as tie-break, at most 58 deep: two levels of
+// that are one here, and a level leaves three entries at most.
 struct BallQuery {
+  static constexpr int width = BvhNode::width;
   const BvhNode *nodes;
   Vec3<float> centre;
-  std::uint32_t stack[64];
+  float open_squared;      // boxes within this distance are opened even where they are too far to be visited
+  float unvisited_squared; // every triangle that was not visited is at least so far away
   int size;
+  std::uint32_t entries[96];
+  float distances[96];
 
-  LOAM_FN BallQuery(const BvhNode *tree, Vec3<float> point) : nodes(tree), centre(point), size(1) { stack[0] = 0; }
+  LOAM_FN BallQuery(const BvhNode *tree, Vec3<float> point, float open = 0.0f)
+      : nodes(tree), centre(point), open_squared(open), unvisited_squared(1e30f), size(1) {
+    entries[0] = 0;
+    distances[0] = 0.0f;
+  }
 
-  // The index of the next triangle, or -1 when there is none left.
+  // The index of the next packet, or -1 when there is none left.
   LOAM_FN int next(float radius_squared) {
     while (size > 0) {
-      const std::uint32_t entry = stack[--size];
-      if ((entry & BvhNode::leaf) != 0) return static_cast<int>(entry & ~BvhNode::leaf);
-      const BvhNode &node = nodes[entry];
-      const float first = distance_squared_to_box(node.lower[0], node.upper[0], centre);
-      const float second = distance_squared_to_box(node.lower[1], node.upper[1], centre);
-      const int far_child = first <= second ? 1 : 0;
-      if (maximum(first, second) <= radius_squared) stack[size++] = node.child[far_child];
-      if (minimum(first, second) <= radius_squared) stack[size++] = node.child[1 - far_child];
+      --size;
+      const std::uint32_t entry = entries[size];
+      const float distance = distances[size];
+      const bool is_leaf = (entry & BvhNode::leaf) != 0;
+      // Beyond the nearest box that was left out there is nothing more to be learned.
+      const float limit = is_leaf ? radius_squared : maximum(radius_squared, minimum(open_squared, unvisited_squared));
+      if (!(distance <= limit))
+        unvisited_squared = minimum(unvisited_squared, distance);
+      else if (is_leaf)
+        return static_cast<int>(entry & ~BvhNode::leaf);
+      else
+        open(nodes[entry], limit);
     }
     return -1;
+  }
+
+private:
+  // How far an offset is beyond a half extent; 0 if it is not.
+  LOAM_FN static float beyond(float offset, float half) {
+    const float excess = absolute(offset) - half;
+    return 0.5f * (excess + absolute(excess));
+  }
+
+  LOAM_FN void open(const BvhNode &node, float limit) {
+    float squared[width];
+    for (int k = 0; k < width; ++k) {
+      const float x = beyond(centre.x - node.centre[0][k], node.half[0][k]);
+      const float y = beyond(centre.y - node.centre[1][k], node.half[1][k]);
+      const float z = beyond(centre.z - node.centre[2][k], node.half[2][k]);
+      squared[k] = x * x + (y * y + z * z);
+    }
+    const int bottom = size;
+    for (int k = 0; k < width; ++k) {
+      if (!(squared[k] <= limit)) {
+        unvisited_squared = minimum(unvisited_squared, squared[k]);
+        continue;
+      }
+      int at = size++;
+      for (; at > bottom && distances[at - 1] < squared[k]; --at) {
+        entries[at] = entries[at - 1];
+        distances[at] = distances[at - 1];
+      }
+      entries[at] = node.child[k];
+      distances[at] = squared[k];
+    }
   }
 };
 
 // The distance from a point in the mesh's frame to the mesh, or `limit` if that is less.
-LOAM_FN float distance_to_mesh(const BvhNode *nodes, const BvhTriangle *triangles, Vec3<float> point, float limit) {
+LOAM_FN float distance_to_mesh(const BvhNode *nodes, const TrianglePacket *packets, Vec3<float> point, float limit) {
   float best = limit * limit;
   BallQuery query(nodes, point);
   for (int i = query.next(best); i >= 0; i = query.next(best)) {
-    const BvhTriangle &t = triangles[i];
-    best = minimum(best, closest_point_on_triangle(t.a - point, t.b - point, t.c - point, t.normal).distance_squared);
+    const PacketPoints points = closest_points(packets[i], point);
+    for (int k = 0; k < TrianglePacket::width; ++k) best = minimum(best, points.distance_squared[k]);
   }
   return minimum(limit, square_root(best));
 }

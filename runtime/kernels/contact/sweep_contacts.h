@@ -82,7 +82,7 @@ private:
   LOAM_FN float free_share(const ColliderView &collider, Vec3<float> start, Vec3<float> way, float way_length) const {
     constexpr int max_advances = 32;
     const float horizon = way_length + margin;
-    float distance = distance_to_mesh(collider.nodes, collider.triangles, start, horizon);
+    float distance = distance_to_mesh(collider.nodes, collider.packets, start, horizon);
     if (distance >= horizon) return 1.0f;
     const float keep = minimum(margin, distance);
     // Half a margin is given to a particle in the surface itself, which has no side yet, to get out on the one it is pushed to.
@@ -90,7 +90,7 @@ private:
     float share = 0.0f, good = 0.0f;
     for (int i = 0; i < max_advances && advance > 1e-3f * keep; ++i) {
       share = minimum(1.0f, share + advance / way_length);
-      distance = distance_to_mesh(collider.nodes, collider.triangles, start + share * way, horizon);
+      distance = distance_to_mesh(collider.nodes, collider.packets, start + share * way, horizon);
       if (distance >= keep) good = share;
       if (share >= 1.0f) break;
       advance = distance - 0.5f * keep;

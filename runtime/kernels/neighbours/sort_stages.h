@@ -7,7 +7,7 @@
 
 namespace loam {
 
-// The arrays that make up the particles. `histories` is null where no law has one.
+// The arrays that make up the particles. `histories` is null where no law has one, `free_distances` where there is no mesh.
 struct ParticleArrays {
   Row *positions;  // x, y, z, true volume
   Row *velocities; // x, y, z, inverse mass
@@ -17,6 +17,7 @@ struct ParticleArrays {
   float *rest_volumes; // V0
   std::uint32_t *ids;
   std::uint32_t *materials;
+  float *free_distances; // see kernels/contact/free_distance.h; no part of the state
 };
 
 struct AssignCells {
@@ -48,6 +49,7 @@ struct MoveParticles {
     to.rest_volumes[i] = from.rest_volumes[j];
     to.ids[i] = from.ids[j];
     to.materials[i] = from.materials[j];
+    if (to.free_distances != nullptr) to.free_distances[i] = from.free_distances[j];
   }
 };
 

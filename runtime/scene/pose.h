@@ -1,0 +1,11 @@
+// Rigid poses between two moments.
+#pragma once
+
+#include "kernels/contact/collider_view.h"
+
+namespace loam {
+
+// The pose at a share t of the way from `a` to `b`: constant velocity and constant spin (spherical interpolation).
+Pose interpolate(const Pose &a, const Pose &b, double t);
+
+} // namespace loam
