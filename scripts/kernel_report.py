@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Compiles the CUDA sources of a compile_commands.json once more with -Xptxas -v and prints what each kernel takes.
 
-Exits with 1 if a kernel of ours spills registers; those of the CUB library may.
+Exits with 1 if a kernel spills registers. Allowed to: those of the CUB library, and the walks through the triangle trees, whose stacks lie in
+local memory anyway and which run once a substep.
 """
 import argparse
 import concurrent.futures
@@ -64,7 +65,7 @@ def shorten(name: str) -> str:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("commands", type=pathlib.Path)
-    parser.add_argument("--allow-spills", default="Device(?:Radix|Scan|Reduce|Merge)", help="kernels, by regular expression, that may spill")
+    parser.add_argument("--allow-spills", default="Device(?:Radix|Scan|Reduce|Merge)|FindContacts|SweepContacts", help="kernels, by regular expression, that may spill")
     arguments = parser.parse_args()
 
     commands = [command for command in json.loads(arguments.commands.read_text()) if command["file"].endswith(".cu")]
@@ -81,11 +82,12 @@ def main() -> int:
     print(f"\n{'kernel':80} {'registers':>9} {'shared':>7} {'stack':>6} {'spilled':>8} {'reloaded':>8}")
     faults = 0
     for name, use in sorted(zip(readable, kernels.values()), key=lambda row: -row[1]["registers"]):
-        bad = (use["stores"] or use["loads"]) and not re.search(arguments.allow_spills, name)
-        faults += bool(bad)
+        spills = bool(use["stores"] or use["loads"])
+        allowed = re.search(arguments.allow_spills, name) is not None
+        faults += spills and not allowed
         print(f"{shorten(name):80} {use['registers']:9} {use['shared']:7} {use['stack']:6} {use['stores']:8} {use['loads']:8}"
-              + ("  SPILLS" if bad else ""))
-    print(f"\n{len(kernels)} kernels, {faults} that spill")
+              + ("" if not spills else "  spills, as it may" if allowed else "  SPILLS"))
+    print(f"\n{len(kernels)} kernels, {faults} that spill and should not")
     return 1 if faults else 0
 
 
