@@ -209,9 +209,8 @@ private:
     if (distance > 0.05f * stand_off) {
       normal = (-1.0f / distance) * closest.point;
     } else { // too near for a direction: the triangle's own, on the particle's side; in front if it lies in the surface
-      const Vec3<float> own = {packet.normal[0][lane], packet.normal[1][lane], packet.normal[2][lane]};
-      const Vec3<float> vertex = {packet.a[0][lane], packet.a[1][lane], packet.a[2][lane]};
-      normal = dot(own, local - vertex) < 0.0f ? -1.0f * own : own;
+      const Vec3<float> own = lane_of(packet.normal, lane);
+      normal = dot(own, local - lane_of(packet.a, lane)) < 0.0f ? -1.0f * own : own;
     }
     const ContactPlane plane = plane_at(collider, local + closest.point, normal, distance, shift);
     if (plane.gap < reach || even_if_out_of_reach) list.insert(plane, index);

@@ -17,15 +17,15 @@ struct PacketPoints {
   }
 };
 
+LOAM_FN Vec3<float> lane_of(const float (&rows)[3][TrianglePacket::width], int lane) {
+  return {rows[0][lane], rows[1][lane], rows[2][lane]};
+}
+
 LOAM_FN PacketPoints closest_points(const TrianglePacket &packet, Vec3<float> point) {
   PacketPoints points;
   for (int k = 0; k < TrianglePacket::width; ++k) {
-    const auto vertex = [&](const float(&v)[3][TrianglePacket::width]) {
-      return Vec3<float>{v[0][k] - point.x, v[1][k] - point.y, v[2][k] - point.z};
-    };
-    const ClosestPoint<float> closest =
-        closest_point_on_triangle(vertex(packet.a), vertex(packet.b), vertex(packet.c),
-                                  Vec3<float>{packet.normal[0][k], packet.normal[1][k], packet.normal[2][k]});
+    const ClosestPoint<float> closest = closest_point_on_triangle(lane_of(packet.a, k) - point, lane_of(packet.b, k) - point,
+                                                                  lane_of(packet.c, k) - point, lane_of(packet.normal, k));
     points.x[k] = closest.point.x;
     points.y[k] = closest.point.y;
     points.z[k] = closest.point.z;

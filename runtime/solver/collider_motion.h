@@ -1,0 +1,77 @@
+// How far the colliders move in a substep, as a bound for free distances (kernels/contact/free_distance.h).
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "kernels/contact/collider_view.h"
+#include "scene/bounding_volume_hierarchy.h"
+
+namespace loam {
+
+class ColliderMotion {
+public:
+  // The greatest distance of a vertex from the mesh's origin.
+  static float extent_of(const BoundingVolumeHierarchy &mesh) {
+    float squared = 0;
+    for (const BvhTriangle &t : mesh.triangles) squared = std::max({squared, dot(t.a, t.a), dot(t.b, t.b), dot(t.c, t.c)});
+    return 1.00001f * square_root(squared);
+  }
+
+  void include(const ColliderView &mesh, float extent) {
+    if (at_rest(mesh)) return;
+    const float spin = spin_of(mesh);
+    include(shift_of(mesh) + spin * extent, spin);
+  }
+  // A plane has points as far away as one likes.
+  void include_plane(const ColliderView &plane) {
+    if (at_rest(plane)) return;
+    const float spin = spin_of(plane);
+    include(spin > 0.0f ? std::numeric_limits<float>::infinity() : shift_of(plane), spin);
+  }
+
+  // The most that a point of any collider moves.
+  float greatest() const { return greatest_; }
+
+  // A query looks `range` far, and farther by what the collider would carry the particle along. That grows with the distance D from the mesh,
+  // by less than D times the spin: a particle that is free by this much is not found.
+  float enough(float range) const {
+    return spin_ < 0.5f ? 1.00001f * (range + greatest_) / (1.0f - spin_) : std::numeric_limits<float>::infinity();
+  }
+
+private:
+  void include(float motion, float spin) {
+    greatest_ = std::max(greatest_, motion);
+    spin_ = std::max(spin_, spin);
+  }
+  static float shift_of(const ColliderView &collider) {
+    const Vec3<float> &a = collider.start.position, &b = collider.end.position;
+    // Positions are rounded; a little more than they say.
+    return 1.00001f * length(b - a) + 1e-6f * (length(a) + length(b));
+  }
+  // A bound on |R_end p - R_start p| / |p|: twice the sine of half the angle, which is less than twice the distance of the quaternions.
+  static float spin_of(const ColliderView &collider) {
+    const Vec4<float> &p = collider.start.rotation, &q = collider.end.rotation;
+    if (p.x == q.x && p.y == q.y && p.z == q.z && p.w == q.w) return 0.0f;
+    const auto distance = [&](float sign) {
+      const float x = q.x - sign * p.x, y = q.y - sign * p.y, z = q.z - sign * p.z, w = q.w - sign * p.w;
+      return square_root(x * x + y * y + (z * z + w * w));
+    };
+    return 2.0001f * std::min(distance(1.0f), distance(-1.0f)) + 1e-6f;
+  }
+
+  float greatest_ = 0, spin_ = 0;
+};
+
+// Whether these are the same colliders in the same order, gone on from where they were.
+inline bool go_on(const std::vector<ColliderView> &before, const std::vector<ColliderView> &now) {
+  return std::equal(before.begin(), before.end(), now.begin(), now.end(), [](const ColliderView &a, const ColliderView &b) {
+    ColliderView between = a;
+    between.start = a.end;
+    between.end = b.start;
+    return a.kind == b.kind && a.nodes == b.nodes && at_rest(between);
+  });
+}
+
+} // namespace loam
