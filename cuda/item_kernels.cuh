@@ -9,7 +9,7 @@ namespace loam {
 
 constexpr int item_threads = 256;
 
-template <class Stage> __global__ void __launch_bounds__(item_threads) each_item(const Stage stage, int count) {
+template <class Stage> __global__ void __launch_bounds__(item_threads, 1) each_item(const Stage stage, int count) {
   const int i = static_cast<int>(blockIdx.x * item_threads + threadIdx.x);
   if (i < count) stage(i);
 }

@@ -31,8 +31,10 @@ struct PassRow {
   int first_line;
 };
 
-// For each particle the key that the visits are sorted by: material, colour, block, from the top bits down.
+// For each particle the key that the visits are sorted by, from the top bits down: material, colour, block, and within a block particles with many
+// neighbours first. That is the CPU's order too, so both solve the same sequence of constraints and differ by rounding alone.
 struct AssignVisits {
+  static constexpr int count_bits = 7, greatest_count = 95;
   CellTable table;
   int block_bits;
   std::uint64_t *keys;
@@ -44,9 +46,12 @@ struct AssignVisits {
     const int x = cell / nz / ny / w, y = cell / nz % ny / w, z = cell % nz / w;
     const int colour = (x % n * n + y % n) * n + z % n;
     const int block = (x * (ny / w) + y) * (nz / w) + z;
-    const std::uint64_t material = table.material_count == 1 ? 0 : table.materials[i];
+    const std::uint64_t material =
+        table.only_material >= 0 ? static_cast<std::uint64_t>(table.only_material) : table.materials[i];
     const std::uint64_t pass = material * static_cast<std::uint64_t>(n * n * n) + static_cast<std::uint64_t>(colour);
-    keys[i] = (pass << block_bits) | static_cast<std::uint64_t>(block);
+    const int count = table.neighbour_counts[i];
+    const int rank = count < greatest_count ? greatest_count - count : 0;
+    keys[i] = (((pass << block_bits) | static_cast<std::uint64_t>(block)) << count_bits) | static_cast<std::uint64_t>(rank);
     particles[i] = static_cast<std::uint32_t>(i);
   }
 };
@@ -58,10 +63,12 @@ struct SortedVisits {
   const int *neighbour_counts;
   int block_bits;
 
+  LOAM_FN std::uint64_t entry_key(int visit) const { return keys[visit] >> AssignVisits::count_bits; }
+  LOAM_FN std::uint64_t pass_number(int visit) const { return entry_key(visit) >> block_bits; }
   LOAM_FN VisitSums own(int visit) const {
     const bool first = visit == 0;
-    const bool entry = first || keys[visit] != keys[visit - 1];
-    const bool pass = first || keys[visit] >> block_bits != keys[visit - 1] >> block_bits;
+    const bool entry = first || entry_key(visit) != entry_key(visit - 1);
+    const bool pass = first || pass_number(visit) != pass_number(visit - 1);
     const int count = neighbour_counts[particles[visit]];
     return {entry ? 1 : 0, pass ? 1 : 0, (count + TilePairs::line - 1) / TilePairs::line};
   }
@@ -93,8 +100,7 @@ struct PlaceVisits {
       entry_passes[before.entries] = before.passes + own.passes - 1;
     }
     if (own.passes > 0)
-      passes[before.passes] = {static_cast<int>(sorted.keys[visit] >> sorted.block_bits), before.entries, visit,
-                               before.lines};
+      passes[before.passes] = {static_cast<int>(sorted.pass_number(visit)), before.entries, visit, before.lines};
     if (visit == visit_count - 1) {
       const VisitSums total = AddVisitSums()(before, own);
       passes[total.passes] = {PassRow::end, total.entries, visit_count, total.lines};

@@ -85,7 +85,7 @@ template <class TileType> struct TeamOverCandidates {
   LOAM_FN Lane distance_squared(const Packet &k) const {
     const Lane dx = tile.load_from(d.x, k.base) - Lane(centre.x), dy = tile.load_from(d.y, k.base) - Lane(centre.y),
                dz = tile.load_from(d.z, k.base) - Lane(centre.z);
-    return dx * dx + (dy * dy + dz * dz);
+    return tile.length_squared(dx, dy, dz);
   }
   // Words of bits, one a lane.
   LOAM_FN unsigned bits_below(Lane squared, float limit) const { return tile.bits_below(squared, limit); }

@@ -23,6 +23,7 @@ template <class TileType> struct TeamOverNeighbours {
   Tile tile;
   Visit visit{};
   float *record = nullptr;
+  float fields[TilePairs::record_stride] = {}; // of the record, as the visit found it
 
   LOAM_FN TeamOverNeighbours(const TilePairs &pairs, const Tile &own_tile) : d(pairs), tile(own_tile) {}
 
@@ -30,6 +31,14 @@ template <class TileType> struct TeamOverNeighbours {
   LOAM_FN void open(int p) {
     visit = d.visits[p];
     record = d.records + static_cast<std::int64_t>(p) * TilePairs::record_stride;
+    // Asked for all at once and early, so that they arrive while the neighbours are gathered. What a stage does not use is not loaded.
+    for (int i = 0; i < TilePairs::record_stride; i += 4) {
+      const Row row = *reinterpret_cast<const Row *>(record + i);
+      fields[i] = row.x;
+      fields[i + 1] = row.y;
+      fields[i + 2] = row.z;
+      fields[i + 3] = row.w;
+    }
   }
   LOAM_FN void close() const { tile.sync(); }
 
@@ -106,12 +115,12 @@ template <class TileType> struct TeamOverNeighbours {
   LOAM_FN Real own_count(int, const int *counts) const { return static_cast<float>(counts[visit.particle]); }
 
   // of the record
-  LOAM_FN Real field(int, int field) const { return record[field]; }
-  LOAM_FN void set_field(int, int field, Real value) const {
+  LOAM_FN Real field(int, int f) const { return fields[f]; }
+  LOAM_FN void set_field(int, int f, Real value) const {
     tile.sync();
-    if (tile.leader()) record[field] = value;
+    if (tile.leader()) record[f] = value;
   }
-  LOAM_FN Vec3<Real> vector(int, int f) const { return {record[f], record[f + 1], record[f + 2]}; }
+  LOAM_FN Vec3<Real> vector(int, int f) const { return {fields[f], fields[f + 1], fields[f + 2]}; }
   LOAM_FN void set_vector(int, int f, const Vec3<Real> &v) const {
     tile.sync();
     if (!tile.leader()) return;
@@ -120,7 +129,7 @@ template <class TileType> struct TeamOverNeighbours {
     record[f + 2] = v.z;
   }
   LOAM_FN Sym3<Real> symmetric(int, int f) const {
-    return {record[f], record[f + 1], record[f + 2], record[f + 3], record[f + 4], record[f + 5]};
+    return {fields[f], fields[f + 1], fields[f + 2], fields[f + 3], fields[f + 4], fields[f + 5]};
   }
   LOAM_FN void set_symmetric(int, int f, const Sym3<Real> &s) const {
     const Real values[6] = {s.xx, s.yy, s.zz, s.xy, s.xz, s.yz};

@@ -58,6 +58,10 @@ template <int W> struct Tile {
 
   // candidates: lane l stands for element base + l
   __device__ __forceinline__ Lane load_from(const float *values, int base) const { return values[base + lane]; }
+  // Never fused: counting and filling, two kernels, must agree on every pair.
+  __device__ __forceinline__ static Lane length_squared(Lane x, Lane y, Lane z) {
+    return __fadd_rn(__fmul_rn(x, x), __fadd_rn(__fmul_rn(y, y), __fmul_rn(z, z)));
+  }
   __device__ __forceinline__ unsigned bits_below(Lane value, float limit) const {
     return __ballot_sync(mask, value < limit) >> (threadIdx.x % 32 / W * W);
   }

@@ -1,7 +1,7 @@
 // How neighbour lists and constraint records lie in memory on CUDA.
 //
-// A visit is one particle's turn. Visits are stored in the order in which they are made: by material, then colour, then block of cells, and within
-// a block in the order of the cells; so a tile that walks through its block reads forward. A visit's list takes whole lines of 16 pairs:
+// A visit is one particle's turn. Visits are stored by material, then colour, then block of cells, and within a block in their order; so a tile
+// that walks through its block reads forward. A visit's list takes whole lines of 16 pairs:
 //
 //   index[line][16]         the neighbours; close ones, which position correction looks at, first
 //   gradient[line][3][16]

@@ -2,11 +2,11 @@
 //
 // Everything is made on the device; the host reads one small table a substep, that of the passes:
 //
-//   1  a key for each particle: material, colour, block             4  prefix sums: which entry, which pass, where its list goes
-//   2  sort by it: the visits. It is stable, so a block's           5  visits, starts of entries and passes; the table comes to the host
-//      particles stay in the order of the cells                     6  entries sorted from large to small within their pass
-//   3  an entry begins where the key changes, a pass where
-//      its upper bits do
+//   1  a key for each particle: material, colour, block, rank       4  prefix sums: which entry, which pass, where its list goes
+//      within the block                                             5  visits, starts of entries and passes; the table comes to the host
+//   2  sort by it: the visits                                       6  entries sorted from large to small within their pass
+//   3  an entry begins where the block changes, a pass where
+//      colour or material do
 //
 // An entry is one block's particles of one material, what a tile works through in turn. Storage is by material first, so that all visits of a
 // material are one piece; passes run by colour first, so that materials take turns.
@@ -65,7 +65,7 @@ public:
     const Colouring &colouring = table.colouring;
     const int w = colouring.block_width, colours = colouring.colours();
     const int block_bits = bits_for(table.grid.cell_count() / (w * w * w));
-    const int key_bits = block_bits + bits_for(colours * table.material_count);
+    const int key_bits = AssignVisits::count_bits + block_bits + bits_for(colours * table.material_count);
 
     const SortedVisits sorted = {keys_.data(), particles_.data(), table.neighbour_counts, block_bits};
     machine_.for_each(count, AssignVisits{table, block_bits, keys_.data(), particles_.data()});
