@@ -11,7 +11,13 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
   search_neighbours(); // sort by cell; lists, corrected gradients and constraint records on x^n
   ex.for_each(count_, ApplyForces{now_.velocities.data(), h_ * input.gravity});
   lap(schedule_.forces, particles());
-  prepare_contacts(input, index);
+  try {
+    prepare_contacts(input, index);
+  } catch (...) {
+    // Memory for contacts was refused. Back to before the forces: the other copy still has the particles as they were before the sort.
+    ex.for_each(count_, MoveParticles{other_.arrays(), now_.arrays(), order_.data(), x_.data(), y_.data(), z_.data()});
+    throw;
+  }
 
   iterate(input.iterations);
   if (last) measure(input.gravity);
