@@ -91,6 +91,13 @@ template <class Executor> void Solver<Executor>::search_neighbours() {
   const CandidateTest test = {4.0f * r * r, close * close, settings_.jacobi};
   table_.particle_count = count_;
   table_.material_count = std::max(1, static_cast<int>(materials_.size()));
+  int in_use = 0;
+  for (int m = 0; m < static_cast<int>(materials_.size()); ++m)
+    if (materials_[static_cast<std::size_t>(m)].in_use) {
+      ++in_use;
+      table_.only_material = m;
+    }
+  if (in_use != 1) table_.only_material = -1;
   table_.keys = keys_.data();
   table_.starts = cell_starts_.data();
   table_.x = x_.data();
