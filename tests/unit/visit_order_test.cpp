@@ -1,0 +1,157 @@
+/* The order of the visits: every particle once, and no two that run at once write the same particle. */
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "cpu/visit_order.h"
+#include "kernels/neighbours/sort_stages.h"
+
+namespace loam {
+namespace {
+
+constexpr float r = 0.01f;
+
+/* Random particles sorted by cell, with their true neighbour counts. */
+struct SortedParticles {
+  std::vector<float> x, y, z;
+  std::vector<std::uint32_t> keys, materials;
+  std::vector<int> starts, neighbour_counts, close_counts;
+  std::vector<std::vector<int>> neighbours;
+  CellTable table{};
+
+  SortedParticles(int count, Colouring colouring, int material_count, float extent) {
+    const CellGrid grid = make_grid(colouring, extent);
+    std::mt19937 random(3);
+    std::vector<Row> rows;
+    for (int i = 0; i < count; ++i) {
+      const auto next = [&] { return extent * float(random()) * 0x1p-32f; };
+      const float a = next(), b = next(), c = next();
+      rows.push_back({a, b * b / extent, c, 1}); // denser at one side, so that cells differ in size
+    }
+    const auto cell = [&](const Row &row) { return grid.index(xyz(row)); };
+    std::stable_sort(rows.begin(), rows.end(), [&](const Row &a, const Row &b) { return cell(a) < cell(b); });
+    starts.resize(std::size_t(grid.cell_count()) + 1);
+    for (const Row &row : rows) {
+      x.push_back(row.x);
+      y.push_back(row.y);
+      z.push_back(row.z);
+      keys.push_back(std::uint32_t(cell(row)));
+      materials.push_back(random() % unsigned(material_count));
+    }
+    for (int i = 0; i < count; ++i) MarkCells{keys.data(), starts.data(), count, grid.cell_count()}(i);
+    neighbours.resize(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      for (std::size_t j = 0; j < rows.size(); ++j)
+        if (i != j && length(xyz(rows[i]) - xyz(rows[j])) < 2 * r) neighbours[i].push_back(int(j));
+    for (const std::vector<int> &list : neighbours) neighbour_counts.push_back(int(list.size()));
+    close_counts.assign(rows.size(), 0);
+    table = {grid,
+             colouring,
+             count,
+             material_count,
+             keys.data(),
+             starts.data(),
+             x.data(),
+             y.data(),
+             z.data(),
+             materials.data(),
+             neighbour_counts.data(),
+             close_counts.data(),
+             count};
+  }
+  static CellGrid make_grid(Colouring colouring, float extent) {
+    CellGrid grid = {{0, 0, 0}, {0, 0, 0}, 1 / (2 * r * 1.0001f)};
+    const int cells = int(extent * grid.inverse_cell) + 1;
+    for (int &size : grid.size) size = (cells + colouring.period() - 1) / colouring.period() * colouring.period();
+    return grid;
+  }
+};
+
+/* Which lane of which group visits each particle. */
+struct Visits {
+  int material = -1, pass = -1, group = -1, lane = -1, times = 0;
+};
+
+std::vector<Visits> visits_of(const SortedParticles &particles, VisitOrder &order, int width) {
+  std::vector<Visits> visits(particles.x.size());
+  std::vector<Row> velocities(particles.x.size() + 10000);
+  const CpuPairs pairs = order.pairs(velocities.data());
+  for (std::size_t p = 0; p < order.passes().size(); ++p) {
+    const VisitOrder::Pass &pass = order.passes()[p];
+    for (int group = pass.first_group; group < pass.last_group; ++group)
+      for (int batch = order.group_begin(group); batch < order.group_begin(group + 1); ++batch)
+        for (int lane = 0; lane < pairs.active[batch]; ++lane) {
+          Visits &visit = visits[std::size_t(pairs.ids[batch * width + lane])];
+          visit = {pass.material, int(p), group, lane, visit.times + 1};
+        }
+  }
+  return visits;
+}
+
+class VisitOrderOf : public testing::TestWithParam<std::tuple<int, int, int>> {};
+
+TEST_P(VisitOrderOf, VisitsEachOnceAndNeverTwoThatShareAParticle) {
+  const auto [block_width, materials, width] = GetParam();
+  const Colouring colouring = {block_width, block_width == 1 ? 3 : 2};
+  const SortedParticles particles(1500, colouring, materials, 0.2f);
+  const HostAllocator allocator;
+  Workers workers(2, {});
+  VisitOrder order(allocator, width);
+  order.reserve(particles.x.size(), materials);
+  const std::int64_t steps = order.arrange(workers, particles.table);
+  order.make_room();
+
+  const std::vector<Visits> visits = visits_of(particles, order, width);
+  for (std::size_t i = 0; i < visits.size(); ++i) {
+    EXPECT_EQ(visits[i].times, 1) << i;
+    EXPECT_EQ(visits[i].material, materials == 1 ? 0 : int(particles.materials[i])) << i;
+  }
+  // Room for every list.
+  const CpuPairs pairs = order.pairs(nullptr);
+  EXPECT_EQ(pairs.offsets[order.batch_count()], steps);
+  for (std::size_t i = 0; i < visits.size(); ++i) {
+    const int batch = order.slots()[i] / width;
+    EXPECT_EQ(pairs.ids[order.slots()[i]], int(i));
+    EXPECT_GE(pairs.offsets[batch + 1] - pairs.offsets[batch], particles.neighbour_counts[i]);
+  }
+  // A visit writes the particle and its neighbours. Within a pass, two visits of different chains (another group, or another lane) may run at
+  // once: they must not write the same particle.
+  std::vector<std::set<std::pair<int, std::pair<int, int>>>> writers(visits.size());
+  for (std::size_t i = 0; i < visits.size(); ++i) {
+    const auto chain = std::make_pair(visits[i].pass, std::make_pair(visits[i].group, visits[i].lane));
+    writers[i].insert(chain);
+    for (const int j : particles.neighbours[i]) writers[std::size_t(j)].insert(chain);
+  }
+  for (const auto &of_particle : writers) {
+    std::set<int> passes;
+    for (const auto &[pass, chain] : of_particle) EXPECT_TRUE(passes.insert(pass).second);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(ColoursMaterialsWidths, VisitOrderOf,
+                         testing::Combine(testing::Values(1, 2), testing::Values(1, 3), testing::Values(4, 16)));
+
+TEST(VisitOrder, TheColouringThatThePaperGivesWouldConflict) {
+  // 8 colours of single cells, 2r apart: the check above must be able to fail.
+  const Colouring colouring = {1, 2};
+  const SortedParticles particles(1500, colouring, 1, 0.2f);
+  std::size_t conflicts = 0;
+  for (std::size_t i = 0; i < particles.x.size(); ++i) {
+    std::set<std::uint32_t> cells_of_one_colour[8];
+    const auto add = [&](std::size_t j) {
+      const auto key = int(particles.keys[j]);
+      const int n = particles.table.grid.size[2], c = key % n % 2 + key / n % n % 2 * 2 + key / n / n % 2 * 4;
+      cells_of_one_colour[c].insert(particles.keys[j]);
+    };
+    add(i);
+    for (const int j : particles.neighbours[i]) add(std::size_t(j));
+    conflicts +=
+        std::any_of(cells_of_one_colour, cells_of_one_colour + 8, [](const auto &cells) { return cells.size() > 1; });
+  }
+  EXPECT_GT(conflicts, particles.x.size() / 4);
+}
+
+} // namespace
+} // namespace loam
