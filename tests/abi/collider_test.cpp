@@ -1,0 +1,245 @@
+/* collider.h: every field of the definition, meshes of every kind, poses, handles. */
+#include "small_world.h"
+
+namespace loam {
+namespace {
+
+using test::infinity;
+using test::nan;
+using test::SmallWorld;
+
+const float origin[3] = {0, 0, 0}, identity[4] = {0, 0, 0, 1};
+
+class Colliders : public SmallWorld {
+protected:
+  static loam_collider_def plane() {
+    loam_collider_def def;
+    EXPECT_EQ(loam_collider_def_default(&def, sizeof def), LOAM_OK);
+    return def;
+  }
+  static loam_collider_def of_mesh(const meshes::Mesh &mesh) {
+    loam_collider_def def = plane();
+    def.kind = LOAM_COLLIDER_MESH;
+    def.mesh = mesh.view();
+    return def;
+  }
+  void refuses(loam_status status, const loam_collider_def &def, const std::vector<std::string> &parts) {
+    loam_collider_id id = 12345;
+    refused(status, parts, [&] { return loam_collider_create(world(), &def, &id); });
+    EXPECT_EQ(id, 12345u);
+  }
+  loam_collider_report report(loam_collider_id id) {
+    loam_collider_report report = {};
+    report.struct_size = sizeof report;
+    EXPECT_EQ(scenes::outcome(loam_collider_get_report(world(), id, &report)), "LOAM_OK");
+    return report;
+  }
+  loam_collider_report report_of(const meshes::Mesh &mesh) {
+    const loam_collider_def def = of_mesh(mesh);
+    loam_collider_id id = 0;
+    EXPECT_EQ(scenes::outcome(loam_collider_create(world(), &def, &id)), "LOAM_OK");
+    const loam_collider_report found = report(id);
+    EXPECT_EQ(loam_collider_destroy(world(), id), LOAM_OK);
+    return found;
+  }
+};
+
+TEST_F(Colliders, NullArguments) {
+  const loam_collider_def def = plane();
+  loam_collider_id id = 0;
+  loam_collider_report report = {};
+  invalid({"world is null"}, [&] { return loam_collider_create(nullptr, &def, &id); });
+  invalid({"def is null"}, [&] { return loam_collider_create(world(), nullptr, &id); });
+  invalid({"collider is null"}, [&] { return loam_collider_create(world(), &def, nullptr); });
+  invalid({"world is null"}, [&] { return loam_collider_destroy(nullptr, collider_); });
+  for (auto *pose : {&loam_collider_move, &loam_collider_place}) {
+    invalid({"world is null"}, [&] { return pose(nullptr, collider_, origin, identity); });
+    invalid({"position is null"}, [&] { return pose(world(), collider_, nullptr, identity); });
+    invalid({"rotation is null"}, [&] { return pose(world(), collider_, origin, nullptr); });
+  }
+  invalid({"world is null"}, [&] { return loam_collider_get_report(nullptr, collider_, &report); });
+  invalid({"report is null"}, [&] { return loam_collider_get_report(world(), collider_, nullptr); });
+}
+
+TEST_F(Colliders, UnknownSizes) {
+  for (const std::uint32_t size : wrong_sizes(sizeof(loam_collider_def))) {
+    loam_collider_def def = plane();
+    def.struct_size = size;
+    refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"struct_size", std::to_string(size)});
+  }
+  for (const std::uint32_t size : wrong_sizes(sizeof(loam_collider_report))) {
+    loam_collider_report report = {};
+    report.struct_size = size;
+    invalid({"report", std::to_string(size)}, [&] { return loam_collider_get_report(world(), collider_, &report); });
+  }
+}
+
+TEST_F(Colliders, EveryFieldHasItsRange) {
+  for (const std::uint32_t kind : {2u, ~0u}) {
+    loam_collider_def def = plane();
+    def.kind = kind;
+    refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"kind", std::to_string(kind)});
+  }
+  for (const float friction : {-0.01f, 100.1f, nan, infinity, -infinity}) {
+    loam_collider_def def = plane();
+    def.friction = friction;
+    refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"friction"});
+  }
+  for (int k = 0; k < 3; ++k)
+    for (const float bad : {nan, infinity, -infinity, 1e20f}) {
+      loam_collider_def def = plane();
+      def.position[k] = bad;
+      refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"position[" + std::to_string(k) + "]"});
+    }
+  for (int k = 0; k < 4; ++k)
+    for (const float bad : {nan, infinity, -infinity, 1e20f}) {
+      loam_collider_def def = plane();
+      def.rotation[k] = bad;
+      refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"rotation[" + std::to_string(k) + "]"});
+    }
+  loam_collider_def def = plane();
+  std::memset(def.rotation, 0, sizeof def.rotation);
+  refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"rotation"});
+  def = plane();
+  def.reserved = 7;
+  refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"reserved", "7"});
+}
+
+TEST_F(Colliders, MeshesAreChecked) {
+  const meshes::Mesh good = meshes::box(1, 1, 1);
+  loam_collider_def def = of_mesh(good);
+  def.mesh.positions = nullptr;
+  refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"mesh.positions is null"});
+  def = of_mesh(good);
+  def.mesh.indices = nullptr;
+  refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"mesh.indices is null"});
+  def = of_mesh(good);
+  def.mesh.triangle_count = 0;
+  refuses(LOAM_ERROR_INVALID_MESH, def, {"mesh"});
+  def = of_mesh(good);
+  def.mesh.vertex_count = 7;
+  refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"mesh.indices", "7"});
+  def = of_mesh(good);
+  def.mesh.triangle_count = ~0u; // refused before anything is read
+  refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"mesh.triangle_count"});
+  for (const float bad : {nan, infinity, -infinity, 1e30f}) {
+    meshes::Mesh mesh = good;
+    mesh.positions[10] = bad;
+    refuses(LOAM_ERROR_INVALID_ARGUMENT, of_mesh(mesh), {"mesh.positions[10]", "vertex 3"});
+  }
+  meshes::Mesh mesh = good;
+  mesh.indices[4] = ~0u;
+  refuses(LOAM_ERROR_INVALID_ARGUMENT, of_mesh(mesh), {"mesh.indices[4]", "triangle 1"});
+  for (float &coordinate : mesh.positions) coordinate = 1;
+  mesh.indices = good.indices;
+  refuses(LOAM_ERROR_INVALID_MESH, of_mesh(mesh), {"mesh", "degenerate"});
+}
+
+TEST_F(Colliders, TheReportCountsWhatIsImperfect) {
+  loam_collider_report found = report_of(meshes::box(1, 1, 1));
+  EXPECT_EQ(found.triangles, 12u);
+  EXPECT_EQ(found.degenerate_triangles + found.open_edges + found.non_manifold_edges, 0u);
+  EXPECT_EQ(found.closed, 1u);
+
+  found = report_of(meshes::sheet(1, 3));
+  EXPECT_EQ(found.open_edges, 12u);
+  EXPECT_EQ(found.closed, 0u);
+
+  meshes::Mesh fin = meshes::box(1, 1, 1); // a third triangle on one edge
+  fin.triangle(0, 4, fin.vertex(0, -3, 0));
+  found = report_of(fin);
+  EXPECT_EQ(found.non_manifold_edges, 1u);
+  EXPECT_EQ(found.open_edges, 2u);
+  EXPECT_EQ(found.closed, 0u);
+
+  meshes::Mesh degenerate = meshes::box(1, 1, 1);
+  degenerate.triangle(0, 0, 1);
+  found = report_of(degenerate);
+  EXPECT_EQ(found.degenerate_triangles, 1u);
+  EXPECT_EQ(found.triangles, 12u);
+  EXPECT_EQ(found.closed, 1u);
+
+  const loam_collider_def def = plane();
+  loam_collider_id id = 0;
+  ASSERT_EQ(loam_collider_create(world(), &def, &id), LOAM_OK);
+  found = report(id);
+  EXPECT_EQ(found.triangles + found.open_edges + found.closed, 0u);
+}
+
+TEST_F(Colliders, PosesAreChecked) {
+  for (auto *pose : {&loam_collider_move, &loam_collider_place}) {
+    for (int k = 0; k < 4; ++k)
+      for (const float bad : {nan, infinity, -infinity}) {
+        float rotation[4] = {0, 0, 0, 1}, position[3] = {0, 0, 0};
+        rotation[k] = bad;
+        invalid({"rotation[" + std::to_string(k) + "]"}, [&] { return pose(world(), collider_, position, rotation); });
+        if (k == 3) continue;
+        position[k] = bad;
+        invalid({"position[" + std::to_string(k) + "]"}, [&] { return pose(world(), collider_, position, identity); });
+      }
+    const float none[4] = {0, 0, 0, 0}, unnormalised[4] = {0, 0, 5, 5};
+    invalid({"rotation"}, [&] { return pose(world(), collider_, origin, none); });
+    EXPECT_EQ(pose(world(), collider_, origin, unnormalised), LOAM_OK);
+  }
+}
+
+TEST_F(Colliders, WrongHandles) {
+  loam_collider_id stale = 0, foreign = 0;
+  const loam_collider_def def = plane();
+  ASSERT_EQ(loam_collider_create(world(), &def, &stale), LOAM_OK);
+  ASSERT_EQ(loam_collider_destroy(world(), stale), LOAM_OK);
+  const scenes::World other(definition(scene_));
+  ASSERT_EQ(loam_collider_create(other.get(), &def, &foreign), LOAM_OK);
+  for (const loam_collider_id bad : {loam_collider_id(0), stale, foreign, collider_ + 1000, ~loam_collider_id(0)}) {
+    loam_collider_report report = {};
+    report.struct_size = sizeof report;
+    const auto wrong = [&](auto &&call) { refused(LOAM_ERROR_INVALID_HANDLE, {"collider"}, call); };
+    wrong([&] { return loam_collider_destroy(world(), bad); });
+    wrong([&] { return loam_collider_move(world(), bad, origin, identity); });
+    wrong([&] { return loam_collider_place(world(), bad, origin, identity); });
+    wrong([&] { return loam_collider_get_report(world(), bad, &report); });
+  }
+}
+
+TEST_F(Colliders, AWorldHoldsFourThousandAndNinetySix) {
+  const loam_collider_def def = plane();
+  std::vector<loam_collider_id> ids;
+  loam_status status = LOAM_OK;
+  while (ids.size() < 5000 && status == LOAM_OK) {
+    loam_collider_id id = 0;
+    status = loam_collider_create(world(), &def, &id);
+    if (status == LOAM_OK) ids.push_back(id);
+  }
+  EXPECT_EQ(status, LOAM_ERROR_CAPACITY);
+  test::expect_error_names({"4096"});
+  EXPECT_EQ(ids.size(), 4096u - 2); // the fixture's plane and box
+  for (const loam_collider_id id : ids) ASSERT_EQ(loam_collider_destroy(world(), id), LOAM_OK);
+}
+
+/* move() carries what it touches over the next step; place() does not. */
+TEST_F(Colliders, MovingPushesAndPlacingDoesNot) {
+  for (const bool at_once : {false, true}) {
+    scenes::Scene lone;
+    lone.material = scenes::rubber();
+    lone.spacing = 0.01f;
+    lone.positions = {0, 0.005f, 0};
+    loam_world_def world_def = scenes::world_def(lone);
+    world_def.gravity[1] = 0;
+    scenes::World pushed(world_def, lone);
+    loam_collider_def def = plane();
+    loam_collider_id id = 0;
+    ASSERT_EQ(loam_collider_create(pushed.get(), &def, &id), LOAM_OK);
+    const float up[3] = {0, 0.004f, 0};
+    ASSERT_EQ((at_once ? loam_collider_place : loam_collider_move)(pushed.get(), id, up, identity), LOAM_OK);
+    pushed.step(0.01f);
+    if (at_once) {
+      EXPECT_LT(pushed.snapshot().velocities[1], 0.11f); // out slowly, no push
+    } else {
+      EXPECT_NEAR(pushed.snapshot().velocities[1], 0.4f, 0.01f);
+      EXPECT_NEAR(pushed.snapshot().positions[1], 0.009f, 2e-4f);
+    }
+  }
+}
+
+} // namespace
+} // namespace loam
