@@ -38,7 +38,8 @@ struct SolverSettings {
   bool semi_implicit;
   std::uint64_t particle_capacity;
   std::uint64_t pair_capacity; // 0: grows
-  bool keep_free_distances = true; // false is for tests: every particle is asked for contacts in every substep, with the same result
+  bool keep_free_distances =
+      true; // false is for tests: every particle is asked for contacts in every substep, with the same result
 };
 
 // A collider during a step: it moves from `start` to `end`.

@@ -212,12 +212,9 @@ template <class Executor> void Solver<Executor>::set_materials(const std::vector
 
 template <class Executor> int Solver<Executor>::add_mesh(const BoundingVolumeHierarchy &mesh) {
   free_distances_hold_ = false;
-  Mesh stored = {executor_.template array<BvhNode>(),
-                 executor_.template array<TrianglePacket>(),
-                 executor_.template array<BvhFeatures>(),
-                 executor_.template array<Vec3<float>>(),
-                 ColliderMotion::extent_of(mesh),
-                 true};
+  Mesh stored = {executor_.template array<BvhNode>(),     executor_.template array<TrianglePacket>(),
+                 executor_.template array<BvhFeatures>(), executor_.template array<Vec3<float>>(),
+                 ColliderMotion::extent_of(mesh),         true};
   copy_in(stored.nodes, mesh.nodes);
   copy_in(stored.packets, mesh.packets);
   copy_in(stored.features, mesh.features);

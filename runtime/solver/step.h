@@ -211,7 +211,8 @@ template <class Executor> void Solver<Executor>::prepare_contacts(const StepInpu
 
 // Free distances are held while there are meshes, and forgotten where a collider came, went or was placed.
 template <class Executor> void Solver<Executor>::prepare_free_distances() {
-  const bool meshes = std::any_of(views_.begin(), views_.end(), [](const ColliderView &view) { return view.nodes != nullptr; });
+  const bool meshes =
+      std::any_of(views_.begin(), views_.end(), [](const ColliderView &view) { return view.nodes != nullptr; });
   if (!meshes || !settings_.keep_free_distances) {
     now_.free_distances.free();
     other_.free_distances.free();

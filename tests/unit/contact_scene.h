@@ -44,8 +44,8 @@ struct ContactScene {
     hierarchies.push_back(
         std::make_unique<BoundingVolumeHierarchy>(build_bounding_volume_hierarchy(make_triangle_mesh(data.view(), "mesh"))));
     const BoundingVolumeHierarchy &h = *hierarchies.back();
-    colliders.push_back({LOAM_COLLIDER_MESH, friction, pose, pose, h.nodes.data(), h.packets.data(), h.features.data(),
-                         h.ring.data()});
+    colliders.push_back(
+        {LOAM_COLLIDER_MESH, friction, pose, pose, h.nodes.data(), h.packets.data(), h.features.data(), h.ring.data()});
     return int(colliders.size()) - 1;
   }
   // Where a collider is to be at the end of the next substep.
