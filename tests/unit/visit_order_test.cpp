@@ -47,19 +47,19 @@ struct SortedParticles {
         if (i != j && length(xyz(rows[i]) - xyz(rows[j])) < 2 * r) neighbours[i].push_back(int(j));
     for (const std::vector<int> &list : neighbours) neighbour_counts.push_back(int(list.size()));
     close_counts.assign(rows.size(), 0);
-    table = {grid,
-             colouring,
-             count,
-             material_count,
-             keys.data(),
-             starts.data(),
-             x.data(),
-             y.data(),
-             z.data(),
-             materials.data(),
-             neighbour_counts.data(),
-             close_counts.data(),
-             count};
+    table.grid = grid;
+    table.colouring = colouring;
+    table.particle_count = table.spare_rows = count;
+    table.material_count = material_count;
+    table.only_material = material_count == 1 ? 0 : -1;
+    table.keys = keys.data();
+    table.starts = starts.data();
+    table.x = x.data();
+    table.y = y.data();
+    table.z = z.data();
+    table.materials = materials.data();
+    table.neighbour_counts = neighbour_counts.data();
+    table.close_counts = close_counts.data();
   }
   static CellGrid make_grid(Colouring colouring, float extent) {
     CellGrid grid = {{0, 0, 0}, {0, 0, 0}, 1 / (2 * r * 1.0001f)};
@@ -98,7 +98,7 @@ TEST_P(VisitOrderOf, VisitsEachOnceAndNeverTwoThatShareAParticle) {
   const SortedParticles particles(1500, colouring, materials, 0.2f);
   const HostAllocator allocator;
   Workers workers(2, {});
-  VisitOrder order(allocator, width);
+  VisitOrder order(allocator, width, workers.thread_count());
   order.reserve(particles.x.size(), materials);
   const std::int64_t steps = order.arrange(workers, particles.table);
   order.make_room();
