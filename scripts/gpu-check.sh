@@ -92,6 +92,10 @@ else
   echo "compute-sanitizer is missing: not run"
 fi
 step benchmarks 90 bash -euo pipefail -c benchmarks
+# A second build, without fused multiply-adds, has the bits of the tiles that the tests emulate on the CPU.
+step parity-configure 60 cmake "${generator[@]}" -S . -B build/gpu-parity "${options[@]}" -DLOAM_CUDA_PARITY=ON -DLOAM_BUILD_SAMPLES=OFF -DLOAM_BUILD_BENCHMARKS=OFF
+step parity-build 180 cmake --build build/gpu-parity --parallel "$(jobs)" --target loam-tests-gpu
+step parity-bits 60 env LOAM_TEST_CUDA_PARITY=1 build/gpu-parity/tests/loam-tests-gpu
 
 GPU=$(query name) DRIVER=$(query driver_version) MEMORY=$(query memory.total) ARCHITECTURE=$architecture \
   COMMIT=$(git rev-parse HEAD 2>/dev/null || echo unknown) CHANGED=$(git status --porcelain --untracked-files=no 2>/dev/null | wc -l) \

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,14 +48,8 @@ std::vector<float> rows(const scenes::World &world, const float *loam_particle_v
   const auto count = static_cast<std::size_t>(view.count);
   std::vector<std::uint32_t> ids(count);
   std::vector<float> values(4 * count), ordered(3 * count);
-  const auto read = [&](void *to, const void *from, std::size_t bytes) {
-    if (view.memory == LOAM_MEMORY_CUDA_DEVICE)
-      test::DeviceMemory().read(to, from, bytes);
-    else
-      std::memcpy(to, from, bytes);
-  };
-  read(ids.data(), view.ids, count * sizeof(std::uint32_t));
-  read(values.data(), view.*column, 4 * count * sizeof(float));
+  test::read_mapped(view, ids.data(), view.ids, count * sizeof(std::uint32_t));
+  test::read_mapped(view, values.data(), view.*column, 4 * count * sizeof(float));
   scenes::require(loam_particles_unmap(world.get()), "loam_particles_unmap");
   for (std::size_t i = 0; i < count; ++i) std::copy_n(&values[4 * i], 3, &ordered[3 * ids[i]]);
   return ordered;

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstring>
 #include <dlfcn.h>
+#include <loam/particles.h>
 #include <stdexcept>
 #include <string>
 
@@ -44,5 +46,13 @@ private:
   Copy copy_;
   Attribute attribute_;
 };
+
+// A copy from mapped buffers, in whichever memory they are.
+inline void read_mapped(const loam_particle_view &view, void *to, const void *from, std::size_t bytes) {
+  if (view.memory == LOAM_MEMORY_CUDA_DEVICE)
+    DeviceMemory().read(to, from, bytes);
+  else
+    std::memcpy(to, from, bytes);
+}
 
 } // namespace loam::test

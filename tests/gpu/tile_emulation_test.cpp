@@ -1,104 +1,19 @@
 // The CUDA executor's text, on the CPU: visit order, layout of the lists, teams and folded sums over emulated tiles, against the CPU executor. What is
 // left for a machine with a GPU to prove are the launches, CUB and the ordering of a tile's threads.
+#include "rig.h"
+
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <memory>
+#include <cstdlib>
 #include <ostream>
-#include <vector>
+#include <string>
 
-#include "cpu/kernel_table.h"
-#include "emulated_machine.h"
-#include "scene/material.h"
-#include "scenes.h"
-#include "solver/solver.h"
+#include "scene/error.h"
 
 namespace loam {
 namespace {
 
-using EmulatedSolver = Solver<TileExecutor<emulation::Machine>>;
-
-enum class Runs { cpu, emulated, emulated_backwards };
-
-struct Settings {
-  bool jacobi = false;
-  std::uint32_t substeps = 8, iterations = 3;
-  Vec3<float> gravity{0, -9.81f, 0};
-};
-
-// One solver with a scene in it. With two materials, particles take them by turns.
-class Rig {
-public:
-  Rig(Runs runs, const scenes::Scene &scene, const Settings &settings, const std::vector<loam_material_def> &materials)
-      : count_(scene.count()) {
-    const SolverSettings solver = {scene.spacing, 0.2f, 0.75f, 20.0f, settings.jacobi, false, count_, 0};
-    ExecutionSettings execution = {};
-    execution.thread_count = runs == Runs::emulated_backwards ? 2 : 1;
-    execution.instruction_set = best_instruction_set();
-    if (runs == Runs::cpu)
-      backend_ = make_cpu_backend(solver, execution);
-    else
-      backend_ = std::make_unique<EmulatedSolver>(solver, execution);
-
-    std::vector<SolverMaterial> list;
-    for (const loam_material_def &def : materials) list.push_back({make_law(def), def.name, true});
-    backend_->set_materials(list);
-    for (std::size_t i = 0; i < count_; ++i) {
-      const std::size_t material = i % materials.size();
-      NewParticles particles = {};
-      particles.material = static_cast<std::uint32_t>(material);
-      particles.first_id = static_cast<std::uint32_t>(i);
-      particles.volume = scene.volume();
-      particles.inverse_mass = 1.0f / (materials[material].density * scene.volume());
-      particles.positions = &scene.positions[3 * i];
-      particles.velocities = scene.velocities.empty() ? nullptr : &scene.velocities[3 * i];
-      particles.count = 1;
-      backend_->add_particles(particles);
-    }
-    input_.substeps = settings.substeps;
-    input_.iterations = settings.iterations;
-    input_.gravity = settings.gravity;
-    for (const scenes::Plane &plane : scene.planes) { // the ground: planes of these scenes face up
-      const Pose pose = {{plane.point[0], plane.point[1], plane.point[2]}, {0, 0, 0, 1}};
-      input_.colliders.push_back({LOAM_COLLIDER_PLANE, plane.friction, pose, pose, -1});
-    }
-  }
-  void step(float seconds) {
-    input_.seconds = seconds;
-    backend_->step(input_);
-  }
-  Backend &backend() { return *backend_; }
-
-  // In the order of the ids.
-  std::vector<Vec3<float>> positions() { return rows(&loam_particle_view::positions); }
-  std::vector<Vec3<float>> velocities() { return rows(&loam_particle_view::velocities); }
-
-private:
-  std::vector<Vec3<float>> rows(const float *loam_particle_view::*column) {
-    loam_particle_view view = {};
-    backend_->map(view);
-    std::vector<Vec3<float>> rows(count_);
-    for (std::size_t i = 0; i < count_; ++i) {
-      const float *row = view.*column + 4 * i;
-      rows[view.ids[i]] = {row[0], row[1], row[2]};
-    }
-    return rows;
-  }
-  std::size_t count_;
-  std::unique_ptr<Backend> backend_;
-  StepInput input_{};
-};
-
-float greatest_difference(const std::vector<Vec3<float>> &a, const std::vector<Vec3<float>> &b) {
-  float most = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, length(a[i] - b[i]));
-  return most;
-}
-float root_mean_square(const std::vector<Vec3<float>> &a) {
-  double sum = 0;
-  for (const Vec3<float> &v : a) sum += static_cast<double>(dot(v, v));
-  return static_cast<float>(std::sqrt(sum / static_cast<double>(a.size())));
-}
+using test::greatest_difference, test::Rig, test::root_mean_square, test::Runs, test::Settings;
 
 struct Law {
   loam_material_def material;
@@ -151,22 +66,28 @@ struct Case {
   float second_block; // spacings away; 0: there is none
   friend void PrintTo(const Case &c, std::ostream *out) { *out << c.name; }
 };
+scenes::Scene make_scene(const Case &c) {
+  scenes::Scene scene = scenes::jittered_block(scenes::sand(), c.particles, 5);
+  if (c.second_block == 0) return scene;
+  const std::size_t first = scene.positions.size();
+  for (std::size_t i = 0; i < first; ++i) {
+    scene.positions.push_back(scene.positions[i] + (i % 3 == 1 ? 0 : c.second_block * scene.spacing));
+    scene.velocities.push_back(scene.velocities[i]);
+  }
+  return scene;
+}
+std::vector<loam_material_def> make_materials(const Case &c) {
+  std::vector<loam_material_def> materials = {scenes::sand()};
+  if (c.materials > 1) materials.push_back(scenes::plasticine());
+  return materials;
+}
 class EachOrder : public testing::TestWithParam<Case> {};
 
 // Blocks of a pass touch no common particle, every particle has its turns, and what a GPU does at once may happen in any order. The cases: the two
 // colourings, passes of two materials, and matter so far apart that cells are wrapped around.
 TEST_P(EachOrder, IsTheCpusAndFreeOfConflicts) {
-  const Case &c = GetParam();
-  scenes::Scene scene = scenes::jittered_block(scenes::sand(), c.particles, 5);
-  if (c.second_block > 0) {
-    const std::size_t first = scene.positions.size();
-    for (std::size_t i = 0; i < first; ++i) {
-      scene.positions.push_back(scene.positions[i] + (i % 3 == 1 ? 0 : c.second_block * scene.spacing));
-      scene.velocities.push_back(scene.velocities[i]);
-    }
-  }
-  std::vector<loam_material_def> materials = {scenes::sand()};
-  if (c.materials > 1) materials.push_back(scenes::plasticine());
+  const scenes::Scene scene = make_scene(GetParam());
+  const auto materials = make_materials(GetParam());
   Settings settings;
   settings.substeps = 2;
   settings.iterations = 2;
@@ -190,6 +111,33 @@ INSTANTIATE_TEST_SUITE_P(TileEmulation, EachOrder,
                          testing::Values(Case{"small_blocks", 1500, 1, 0}, Case{"large_blocks", 30000, 1, 0},
                                          Case{"two_materials", 1500, 2, 0}, Case{"scattered", 500, 1, 707}),
                          [](const auto &info) { return std::string(info.param.name); });
+
+// CUDA against the emulation: the same text, the same order, the same folding. With fused multiply-adds they differ by rounding; a build with
+// LOAM_CUDA_PARITY, which says so by an environment variable, must have the same bits.
+TEST_P(EachOrder, OfCudaGivesTheEmulationsBits) {
+  const bool same_bits = std::getenv("LOAM_TEST_CUDA_PARITY") != nullptr;
+  const scenes::Scene scene = make_scene(GetParam());
+  const auto materials = make_materials(GetParam());
+  for (const bool jacobi : {false, true}) {
+    Settings settings;
+    settings.jacobi = jacobi;
+    settings.substeps = 2;
+    settings.iterations = 2;
+    try {
+      Rig cuda(Runs::cuda, scene, settings, materials), emulated(Runs::emulated, scene, settings, materials);
+      cuda.step(0.002f);
+      emulated.step(0.002f);
+      const auto expected = emulated.velocities();
+      EXPECT_LT(greatest_difference(expected, cuda.velocities()), 1e-4f * root_mean_square(expected)) << jacobi;
+      if (same_bits) {
+        EXPECT_EQ(cuda.backend().state_hash(), emulated.backend().state_hash()) << jacobi;
+      }
+    } catch (const Error &error) {
+      EXPECT_EQ(error.status(), LOAM_ERROR_BACKEND_UNAVAILABLE) << error.what();
+      EXPECT_FALSE(same_bits) << "the parity check needs a device";
+    }
+  }
+}
 
 // The whole scene: a column of sand that collapses.
 TEST(TileEmulation, ColumnCollapseAgreesWithTheCpu) {
