@@ -1,0 +1,144 @@
+/* What every hard case must come through with: finite numbers, bounded speed and energy, all its particles, and the same bits when it is run again. */
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <gtest/gtest.h>
+#include <vector>
+
+#include "support/hooks.h"
+#include "support/meshes.h"
+#include "support/scenes.h"
+
+namespace loam::test {
+
+/* A scene in several materials, and what is done to the world before each step. */
+struct HardCase {
+  std::vector<scenes::Scene> parts;
+  loam_world_def def{};
+  float step_seconds = 1.0f / 120;
+  int steps = 60;
+  double collider_speed = 0;                           // of the fastest point, m/s
+  std::function<void(scenes::World &)> prepare;        // once, after the particles are in
+  std::function<void(scenes::World &, int step)> each; // before every step
+
+  explicit HardCase(std::uint32_t solver, std::vector<scenes::Scene> of = {}) : parts(std::move(of)) {
+    scenes::require(loam_world_def_default(&def, sizeof def), "default");
+    def.backend = LOAM_BACKEND_CPU;
+    def.thread_count = 1;
+    def.solver = solver;
+    def.substeps = 8;
+    def.iterations = 4;
+    def.particle_capacity = 20000;
+  }
+};
+
+struct Outcome {
+  scenes::Snapshot end;
+  loam_statistics statistics{};
+  double peak_speed = 0, peak_energy = 0; // kinetic, after any step
+  double lowest = 0, start_energy = 0;    // of y; kinetic and potential above y = 0 at the start
+  double mean_height = 0;
+};
+
+inline Outcome run_once(const HardCase &hard, std::uint64_t &hash) {
+  scenes::World world(hard.def);
+  for (const scenes::Scene &part : hard.parts) world.add(part);
+  if (hard.prepare) hard.prepare(world);
+  const std::size_t count = world.snapshot().count();
+  Outcome outcome;
+  const auto potential = [&](const scenes::Snapshot &now) {
+    double energy = 0;
+    for (std::size_t i = 0; i < now.count(); ++i)
+      if (now.inverse_masses[i] > 0) {
+        const double mass = 1 / double(now.inverse_masses[i]);
+        energy += mass * 9.81 * double(now.positions[3 * i + 1]);
+        for (std::size_t k = 0; k < 3; ++k) energy += mass * std::pow(double(now.velocities[3 * i + k]), 2) / 2;
+      }
+    return energy;
+  };
+  outcome.start_energy = potential(world.snapshot());
+  for (int step = 0; step < hard.steps; ++step) {
+    if (hard.each) hard.each(world, step);
+    world.step(hard.step_seconds);
+    const loam_statistics now = world.statistics();
+    EXPECT_EQ(now.non_finite, 0u) << "step " << step;
+    outcome.peak_speed = std::max(outcome.peak_speed, now.max_speed);
+    outcome.peak_energy = std::max(outcome.peak_energy, now.kinetic_energy);
+    if (now.non_finite > 0) break;
+  }
+  outcome.end = world.snapshot();
+  outcome.statistics = world.statistics();
+  outcome.lowest = 1e30;
+  for (std::size_t i = 1; i < outcome.end.positions.size(); i += 3) {
+    outcome.lowest = std::min(outcome.lowest, double(outcome.end.positions[i]));
+    outcome.mean_height += double(outcome.end.positions[i]) / double(count);
+  }
+  EXPECT_EQ(outcome.end.count(), count);
+  for (const float x : outcome.end.positions) EXPECT_TRUE(std::isfinite(x));
+  hash = world.state_hash();
+  // Speed is bounded by r a substep. Contact acts once more after the limit and may hand back some of what it took.
+  const double limit = double(hard.def.kernel_radius) / (double(hard.step_seconds) / hard.def.substeps);
+  EXPECT_LE(outcome.peak_speed, 2 * limit + hard.collider_speed);
+  return outcome;
+}
+
+/* Runs the case twice; once with a sanitizer. */
+inline Outcome survive(const HardCase &hard) {
+  std::uint64_t first = 0, second = 0;
+  Outcome outcome = run_once(hard, first);
+  if (!hooks::short_run()) {
+    run_once(hard, second);
+    EXPECT_EQ(first, second);
+  }
+  testing::Test::RecordProperty("peak_speed", std::to_string(outcome.peak_speed));
+  testing::Test::RecordProperty("lowest", std::to_string(outcome.lowest));
+  return outcome;
+}
+
+inline loam_collider_id add_mesh(scenes::World &world, const meshes::Mesh &mesh, float friction = 0.6f, float x = 0,
+                                 float y = 0, float z = 0) {
+  loam_collider_def def;
+  scenes::require(loam_collider_def_default(&def, sizeof def), "default");
+  def.kind = LOAM_COLLIDER_MESH;
+  def.mesh = mesh.view();
+  def.friction = friction;
+  def.position[0] = x;
+  def.position[1] = y;
+  def.position[2] = z;
+  loam_collider_id id = 0;
+  scenes::require(loam_collider_create(world.get(), &def, &id), "collider");
+  return id;
+}
+
+/* A block of `edge` particles to a side whose lowest layer is `height` above the ground's, moved aside by x. */
+inline scenes::Scene block(const loam_material_def &material, int edge, float height, float speed = 0, float x = 0) {
+  scenes::Scene scene = scenes::drop_block(material, edge, height, speed);
+  for (std::size_t i = 0; i < scene.positions.size(); i += 3) scene.positions[i] += x;
+  return scene;
+}
+inline scenes::Scene without_planes(scenes::Scene scene) {
+  scene.planes.clear();
+  return scene;
+}
+
+/* How many particles are outside a closed mesh that stands at `at`. */
+inline std::size_t outside(const std::vector<float> &positions, const meshes::Mesh &mesh, const float at[3]) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < positions.size(); i += 3) {
+    const double local[3] = {double(positions[i] - at[0]), double(positions[i + 1] - at[1]),
+                             double(positions[i + 2] - at[2])};
+    count += meshes::winding_number(mesh, local) < 0.5 ? 1 : 0;
+  }
+  return count;
+}
+
+/* A test of each solver: derive the suite from it and instantiate it with both_solvers() and solver_name. */
+class OfASolver : public testing::TestWithParam<std::uint32_t> {};
+inline auto both_solvers() { return testing::Values(LOAM_SOLVER_GAUSS_SEIDEL, LOAM_SOLVER_JACOBI); }
+inline std::string solver_name(const testing::TestParamInfo<std::uint32_t> &tested) {
+  return tested.param == LOAM_SOLVER_JACOBI ? "Jacobi" : "GaussSeidel";
+}
+
+} // namespace loam::test
