@@ -14,10 +14,12 @@ std::string cuda_problem();
 // Throws Error DEVICE "<what>: <CUDA's text>" unless the result is success.
 void check_cuda(cudaError_t result, const char *what);
 
-// Makes a device the thread's current one for a while: hosts that use CUDA themselves keep theirs.
+// Makes a device the thread's current one for a while: hosts that use CUDA themselves keep theirs. An error that the host has left behind on the
+// thread is dropped, or the next launch would be blamed for it.
 class CurrentDevice {
 public:
   explicit CurrentDevice(int device) {
+    cudaGetLastError();
     if (cudaGetDevice(&before_) == cudaSuccess && before_ != device) changed_ = cudaSetDevice(device) == cudaSuccess;
   }
   ~CurrentDevice() {

@@ -31,8 +31,8 @@ struct PassRow {
   int first_line;
 };
 
-// For each particle the key that the visits are sorted by, from the top bits down: material, colour, block, and within a block particles with many
-// neighbours first. That is the CPU's order too, so both solve the same sequence of constraints and differ by rounding alone.
+// For each particle the key that the visits are sorted by, from the top bits down: material, colour, block, and within a block particles
+// with many neighbours first. That is the CPU's order too, so both solve the same sequence of constraints and differ by rounding alone.
 struct AssignVisits {
   static constexpr int count_bits = 7, greatest_count = 95;
   CellTable table;

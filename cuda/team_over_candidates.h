@@ -1,5 +1,5 @@
-// The CUDA team for the neighbour search: a tile for a particle, a lane for a candidate. Particles are sorted by cell, so candidates lie in runs of
-// three cells along z: nine columns, each in one piece, or in two where the torus' seam cuts it.
+// The CUDA team for the neighbour search: a tile for a particle, a lane for a candidate. Particles are sorted by cell, so candidates lie in
+// runs of three cells along z: nine columns, each in one piece, or in two where the torus' seam cuts it.
 //
 // All lanes go through the runs together, also where a run's last packet does not fill the tile.
 #pragma once

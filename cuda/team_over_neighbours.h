@@ -1,5 +1,5 @@
-// The CUDA team for stages over neighbours: a tile for a particle, a lane for a neighbour. Values of the particle itself are the same in all lanes,
-// which compute them alike; the tile's leader writes them.
+// The CUDA team for stages over neighbours: a tile for a particle, a lane for a neighbour. Values of the particle itself are the same in
+// all lanes, which compute them alike; the tile's leader writes them.
 //
 // Ordering within a tile. A lane may run ahead of the others between two points where they wait for each other, so:
 //   - before the leader writes something of the particle, all lanes have read what they want of it: every such write waits first;

@@ -1,8 +1,8 @@
 // A tile: W neighbouring threads of a warp that share the neighbours of one particle, a lane each. A lane's value is a plain float.
 //
-// The teams are written against this interface, so that their text also runs on a machine without a GPU, over a tile that is emulated. There
-// a lane is one element of an array; hence `left`, how many lanes from the first still have an element of the list: threads beyond its end are not in
-// the loop at all and need not look.
+// The teams are written against this interface, so that their text also runs on a machine without a GPU, over a tile that is emulated.
+// There a lane is one element of an array; hence `left`, how many lanes from the first still have an element of the list: threads beyond
+// its end are not in the loop at all and need not look.
 //
 // Lanes leave a loop over neighbours after different numbers of rounds. Functions that need all lanes (sum, sync, bits_below) name the tile's
 // threads, which makes them wait for each other; they must stand outside such loops.

@@ -1,5 +1,6 @@
-// The executor for machines that give a particle a tile of lanes. It offers the same names as the CPU's (cpu/cpu_executor.h) and puts them on a Machine,
-// which holds the memory and runs loops: the CUDA device, or in tests an emulation of it, so that all of this is also executed where there is no GPU.
+// The executor for machines that give a particle a tile of lanes. It offers the same names as the CPU's (cpu/cpu_executor.h) and puts them
+// on a Machine, which holds the memory and runs loops: the CUDA device, or in tests an emulation of it, so that all of this is also executed
+// where there is no GPU.
 //
 // A Machine offers
 //   Array<T>, array<T>(), memory_kind

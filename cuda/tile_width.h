@@ -15,8 +15,8 @@ template <class Stage> struct SequentialOverNeighbours : std::is_base_of<Correct
 template <class Stage> struct InTurn : std::is_same<Stage, CorrectPositionsInTurn> {};
 template <class Law, class Multiplier> struct InTurn<SolveInelastic<Law, Multiplier>> : std::true_type {};
 
-// 16 lanes for the usual 26 to 28 neighbours: two rounds that are mostly full, and the part of a visit that every lane repeats (the law) is shared
-// by two particles to a warp.
+// 16 lanes for the usual 26 to 28 neighbours: two rounds that are mostly full, and the part of a visit that every lane repeats (the law) is
+// shared by two particles to a warp.
 constexpr int search_tile_width = 16;
 template <class Stage> constexpr int tile_width = SequentialOverNeighbours<Stage>::value ? 1 : 16;
 

@@ -1,5 +1,5 @@
-// The CUDA backend through the public interface. Each test has two answers: where there is no device, that this is said as documented and nothing else is
-// harmed; where there is one, that it computes what the CPU does.
+// The CUDA backend through the public interface. Each test has two answers: where there is no device, that this is said as documented and
+// nothing else is harmed; where there is one, that it computes what the CPU does.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-// A tile of lanes on a machine without a GPU: the lanes are an array and run in lockstep. The CUDA teams are compiled against it, so their text, the
-// layout of the lists and the folding of sums are executed by tests. Lane and Real are different types here, so a stage that takes one for the
-// other does not compile.
+// A tile of lanes on a machine without a GPU: the lanes are an array and run in lockstep. The CUDA teams are compiled against it, so their
+// text, the layout of the lists and the folding of sums are executed by tests. Lane and Real are different types here, so a stage that
+// takes one for the other does not compile.
 #pragma once
 
 #include <bit>

@@ -1,5 +1,5 @@
-// The CUDA executor's text, on the CPU: visit order, layout of the lists, teams and folded sums over emulated tiles, against the CPU executor. What is
-// left for a machine with a GPU to prove are the launches, CUB and the ordering of a tile's threads.
+// The CUDA executor's text, on the CPU: visit order, layout of the lists, teams and folded sums over emulated tiles, against the CPU
+// executor. What is left for a machine with a GPU to prove are the launches, CUB and the ordering of a tile's threads.
 #include "rig.h"
 
 #include <gtest/gtest.h>
@@ -83,8 +83,8 @@ std::vector<loam_material_def> make_materials(const Case &c) {
 }
 class EachOrder : public testing::TestWithParam<Case> {};
 
-// Blocks of a pass touch no common particle, every particle has its turns, and what a GPU does at once may happen in any order. The cases: the two
-// colourings, passes of two materials, and matter so far apart that cells are wrapped around.
+// Blocks of a pass touch no common particle, every particle has its turns, and what a GPU does at once may happen in any order. The cases:
+// the two colourings, passes of two materials, and matter so far apart that cells are wrapped around.
 TEST_P(EachOrder, IsTheCpusAndFreeOfConflicts) {
   const scenes::Scene scene = make_scene(GetParam());
   const auto materials = make_materials(GetParam());
