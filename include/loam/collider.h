@@ -28,12 +28,12 @@ enum {
 
 typedef struct loam_collider_def {
   uint32_t struct_size;
-  uint32_t kind;      /* LOAM_COLLIDER_*; default PLANE */
-  float position[3];  /* where the collider's origin is, metres; default 0 */
-  float rotation[4];  /* unit quaternion x, y, z, w; default identity; normalised by the library */
-  float friction;     /* Coulomb coefficient against all matter, 0 to 100; default 0.6 */
-  uint32_t reserved;  /* 0 */
-  loam_mesh mesh;     /* MESH only, in the collider's own frame; copied */
+  uint32_t kind;     /* LOAM_COLLIDER_*; default PLANE */
+  float position[3]; /* where the collider's origin is, metres; default 0 */
+  float rotation[4]; /* unit quaternion x, y, z, w; default identity; normalised by the library */
+  float friction;    /* Coulomb coefficient against all matter, 0 to 100; default 0.6 */
+  uint32_t reserved; /* 0 */
+  loam_mesh mesh;    /* MESH only, in the collider's own frame; copied */
 } loam_collider_def;
 
 /* Errors: INVALID_ARGUMENT for null or an unknown size. */
@@ -60,16 +60,17 @@ LOAM_API loam_status loam_collider_place(loam_world *world, loam_collider_id col
 
 /* What the library found in a collider's mesh. For a plane all counts are 0. */
 typedef struct loam_collider_report {
-  uint32_t struct_size;           /* set by the caller */
-  uint32_t triangles;             /* kept */
-  uint32_t degenerate_triangles;  /* dropped: zero area or repeated vertices */
-  uint32_t open_edges;            /* edges of one triangle only */
-  uint32_t non_manifold_edges;    /* edges of three triangles or more, or of two that disagree on the orientation */
-  uint32_t closed;                /* 1 if there is an inside: no open or non-manifold edge */
+  uint32_t struct_size;          /* set by the caller */
+  uint32_t triangles;            /* kept */
+  uint32_t degenerate_triangles; /* dropped: zero area or repeated vertices */
+  uint32_t open_edges;           /* edges of one triangle only */
+  uint32_t non_manifold_edges;   /* edges of three triangles or more, or of two that disagree on the orientation */
+  uint32_t closed;               /* 1 if there is an inside: no open or non-manifold edge */
 } loam_collider_report;
 
 /* Errors: INVALID_HANDLE, INVALID_ARGUMENT. */
-LOAM_API loam_status loam_collider_get_report(const loam_world *world, loam_collider_id collider, loam_collider_report *report);
+LOAM_API loam_status loam_collider_get_report(const loam_world *world, loam_collider_id collider,
+                                              loam_collider_report *report);
 
 #ifdef __cplusplus
 }

@@ -45,7 +45,7 @@ typedef struct loam_fill_def {
   uint32_t sampling;         /* LOAM_SAMPLING_*; default POISSON_DISK */
   loam_material_id material; /* of this world */
   loam_region region;        /* what to fill */
-  loam_region cut;           /* and only there, unless its kind is NONE (the default): "the upper bulb" is a mesh cut with a box */
+  loam_region cut; /* and only there, unless its kind is NONE (the default): "the upper bulb" is a mesh cut with a box */
 
   /* The least distance of Poisson-disk samples, or the lattice's constant, in metres. 0 (the default): 0.83 r or r, which give the
    * neighbourhoods that the solver expects. At least 0.5 r. */
@@ -56,9 +56,9 @@ typedef struct loam_fill_def {
    * keeps the matter from being pushed at the start. The mass still fills the region that is left. */
   float inset;
 
-  uint32_t seed;            /* the same seed gives the same particles; default 1 */
-  float velocity[3];        /* m/s of all particles at the start; default 0 */
-  uint32_t reserved;        /* 0 */
+  uint32_t seed;     /* the same seed gives the same particles; default 1 */
+  float velocity[3]; /* m/s of all particles at the start; default 0 */
+  uint32_t reserved; /* 0 */
 } loam_fill_def;
 
 /* Errors: INVALID_ARGUMENT for null or an unknown size. */
@@ -73,13 +73,13 @@ LOAM_API loam_status loam_particles_fill(loam_world *world, const loam_fill_def 
 /* Particles given one by one, all of one material. Arrays of `count` elements, read during the call only. */
 typedef struct loam_particles_def {
   uint32_t struct_size;
-  uint32_t reserved;         /* 0 */
+  uint32_t reserved; /* 0 */
   loam_material_id material;
   uint64_t count;
-  const float *positions;    /* x, y, z; metres; finite, and within 1e6 r of the origin */
-  const float *velocities;   /* x, y, z; m/s; null: at rest */
-  float volume;              /* m^3 of each undeformed particle; 0: r^3 */
-  uint32_t pinned;           /* 1: infinite mass; these particles keep their velocity for ever (a clamped end). 0: free */
+  const float *positions;  /* x, y, z; metres; finite, and within 1e6 r of the origin */
+  const float *velocities; /* x, y, z; m/s; null: at rest */
+  float volume;            /* m^3 of each undeformed particle; 0: r^3 */
+  uint32_t pinned;         /* 1: infinite mass; these particles keep their velocity for ever (a clamped end). 0: free */
 } loam_particles_def;
 
 /* Errors: INVALID_ARGUMENT for null or an unknown size. */
@@ -105,9 +105,10 @@ typedef struct loam_particle_view {
   const float *positions;    /* stride of 4 floats: x, y, z, and the particle's present volume in m^3 */
   const float *velocities;   /* stride of 4 floats: x, y, z, and the inverse mass in 1/kg (0: pinned) */
   const uint32_t *materials; /* the lower 32 bits of the loam_material_id */
-  const float *strains;      /* stride of 6 floats xx, yy, zz, xy, xz, yz: b - I with b the elastic left Cauchy-Green tensor; the Hencky
+  const float
+      *strains; /* stride of 6 floats xx, yy, zz, xy, xz, yz: b - I with b the elastic left Cauchy-Green tensor; the Hencky
                               * strain is log(I + this) / 2 */
-  const float *densities;    /* kg/m^3: mass over present volume; 0 for pinned particles */
+  const float *densities; /* kg/m^3: mass over present volume; 0 for pinned particles */
 } loam_particle_view;
 
 /* Gives the pointers. They are valid until loam_particles_unmap or loam_world_destroy; in between, calls that would change the particles

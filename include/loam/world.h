@@ -29,8 +29,9 @@ enum {
 
 /* When the plastic return mapping acts. */
 enum {
-  LOAM_PLASTICITY_IMPLICIT = 0,     /* inside every iteration, as the method asks */
-  LOAM_PLASTICITY_SEMI_IMPLICIT = 1 /* once, at the end of the substep; matter then behaves like jelly: for comparison only */
+  LOAM_PLASTICITY_IMPLICIT = 0, /* inside every iteration, as the method asks */
+  LOAM_PLASTICITY_SEMI_IMPLICIT =
+      1 /* once, at the end of the substep; matter then behaves like jelly: for comparison only */
 };
 
 /* The instruction set of the CPU backend. Results have the same bits with each of them. */
@@ -130,12 +131,12 @@ typedef struct loam_statistics {
   uint32_t struct_size;   /* set by the caller to sizeof(loam_statistics) */
   uint32_t substeps_done; /* whole substeps of the last step */
 
-  uint64_t particles;      /* now in the world */
-  uint64_t pairs;          /* ordered neighbour pairs in the last substep */
-  uint64_t pairs_peak;     /* the most in any substep so far: what pair_capacity would have to be */
-  uint64_t pair_visits;    /* pairs x iterations, summed over the substeps of the step */
-  uint64_t contacts;       /* collider contact planes in the last substep */
-  uint64_t non_finite;     /* particles whose position, velocity or strain is not finite now; such a particle is held in place */
+  uint64_t particles;   /* now in the world */
+  uint64_t pairs;       /* ordered neighbour pairs in the last substep */
+  uint64_t pairs_peak;  /* the most in any substep so far: what pair_capacity would have to be */
+  uint64_t pair_visits; /* pairs x iterations, summed over the substeps of the step */
+  uint64_t contacts;    /* collider contact planes in the last substep */
+  uint64_t non_finite; /* particles whose position, velocity or strain is not finite now; such a particle is held in place */
   uint64_t speed_limited;  /* times a particle was slowed to r / substep in the step */
   uint64_t strain_limited; /* times a strain was clamped to its bound in the step */
 

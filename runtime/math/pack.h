@@ -71,16 +71,16 @@ LOAM_FN unsigned owned_pairs(const int *index, int self) {
 
 // Copies the entries whose bits are set to `to`, one after the other; up to a pack of others behind them.
 LOAM_FN void compress(const int *from, unsigned bits, int *to) {
-  const hn::RebindToSigned<FloatTag> tag;
-  // One store of the size of the load behind it: the word then stays in a register.
-  std::uint8_t bytes[8] = {};
   if constexpr (Pack::width == 16) {
+    // One store of the size of the load behind it: the word then stays in a register.
+    const hn::RebindToSigned<FloatTag> tag;
+    std::uint8_t bytes[8] = {};
     const auto word = static_cast<std::uint16_t>(bits);
     __builtin_memcpy(bytes, &word, sizeof word);
-  } else {
-    bytes[0] = static_cast<std::uint8_t>(bits);
+    hn::StoreU(hn::Compress(hn::Load(tag, from), hn::LoadMaskBits(tag, bytes)), tag, to);
+  } else { // without an instruction for it, one by one is faster
+    for (; bits != 0; bits &= bits - 1) *to++ = from[__builtin_ctz(bits)];
   }
-  hn::StoreU(hn::Compress(hn::Load(tag, from), hn::LoadMaskBits(tag, bytes)), tag, to);
 }
 
 // Four registers of rows: register a holds, in its 128-bit block q, the row index[a + 4 q]; after the transposition within blocks, lane l
