@@ -12,7 +12,7 @@
 #   package   a host project builds against the installed library, and configures with the source tree taken in
 #   tidy      clang-tidy over what stands above the kernels
 #   asan      address and undefined-behaviour sanitizers: unit, abi, hard cases
-#   tsan      thread sanitizer: determinism, and the unit tests of threads
+#   tsan      thread sanitizer: determinism, the job system, two worlds at once, and the unit tests with threads
 # shellcheck source=scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -123,7 +123,8 @@ step_asan() {
 step_tsan() {
   configure tsan
   cmake --build --preset tsan
-  ctest --preset tsan --tests-regex '^determinism[.]|^unit[.][A-Za-z]*(Thread|Job|Parallel|Executor|Pool)'
+  ctest --preset tsan --label-regex '^(unit|determinism)$'
+  ctest --preset tsan --tests-regex '^abi[.](JobSystem|TwoWorlds)[.]'
 }
 
 if [[ ${1:-} == --run ]]; then
