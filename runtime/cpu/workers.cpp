@@ -61,7 +61,7 @@ bool Workers::take_chunk(std::uint64_t seen) {
 
 void Workers::help() {
   // A job system may run the task at once, on the thread that asks for help: that thread has the loops to publish.
-  if (std::this_thread::get_id() == caller_) return;
+  if (std::this_thread::get_id() == caller_.load(std::memory_order_relaxed)) return;
   current_ = joined_.fetch_add(1, std::memory_order_relaxed);
   while (open_.load(std::memory_order_acquire)) {
     const std::uint64_t seen = word_.load(std::memory_order_acquire);
@@ -109,7 +109,7 @@ void Workers::run_session(void (*body)(void *), void *data) {
     body(data);
     return;
   }
-  caller_ = std::this_thread::get_id();
+  caller_.store(std::this_thread::get_id(), std::memory_order_relaxed);
   open_.store(true, std::memory_order_release);
   std::exception_ptr failure;
   const auto run_body = [&] {

@@ -60,7 +60,7 @@ private:
   std::atomic<ChunkFunction> function_{nullptr};
   std::atomic<void *> data_{nullptr};
   std::atomic<bool> open_{false};
-  std::thread::id caller_; // of the session
+  std::atomic<std::thread::id> caller_; // of the session
   alignas(64) std::atomic<int> done_{0};
   std::atomic<unsigned> joined_{1}; // threads of the session so far
   static thread_local unsigned current_;
