@@ -4,7 +4,9 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <vector>
 
 #include "cpu/kernel_table.h"
 #include "cpu/radix_sort.h"
@@ -25,7 +27,7 @@ public:
   explicit CpuExecutor(const ExecutionSettings &settings)
       : allocator_(settings.allocator), workers_(settings.thread_count, settings.job_system),
         table_(kernel_table(settings.instruction_set)), sort_(allocator_),
-        order_(allocator_, table_->width, workers_.thread_count()) {}
+        order_(allocator_, table_->width, workers_.thread_count()), next_of_part_(workers_.thread_count()) {}
 
   template <class T> Array<T> array() { return Array<T>(allocator_); }
   void reserve(std::size_t particle_capacity, int material_count) {
@@ -96,13 +98,11 @@ public:
                 [&](int first, int last) { order_.interleave_lists(order_.lists_of_all(), first, last); });
       return;
     }
-    in_chunks(order_.group_count(), 1, [&](int first_group, int last_group) {
+    for_each_group([&](int group) {
       CpuCandidates own = views;
-      for (int group = first_group; group < last_group; ++group) {
-        own.lists = order_.lists_of_group(group, Workers::current());
-        order_.for_each_run_of_group(group, [&](int first, int last) { launch(&stage, own, first, last); });
-        order_.interleave_lists(own.lists, order_.group_begin(group), order_.group_begin(group + 1));
-      }
+      own.lists = order_.lists_of_group(group, Workers::current());
+      order_.for_each_run_of_group(group, [&](int first, int last) { launch(&stage, own, first, last); });
+      order_.interleave_lists(own.lists, order_.group_begin(group), order_.group_begin(group + 1));
     });
   }
   std::size_t list_bytes() const { return order_.list_bytes(); }
@@ -113,7 +113,9 @@ public:
 
   // All particles at once: the stage writes its own particle only.
   template <class Stage> void for_each_particle(Row *velocities, const Stage &stage) {
-    over_batches(velocities, stage, 0, order_.batch_count());
+    const CpuPairs pairs = order_.pairs(velocities);
+    const auto launch = table_->team[IndexOf<Stage, TeamStages>::value];
+    for_each_group([&](int group) { launch(&stage, pairs, order_.group_begin(group), order_.group_begin(group + 1)); });
   }
   template <class Stage> void for_each_particle_of(int material, Row *velocities, const Stage &stage) {
     for (const VisitOrder::Pass &pass : order_.passes())
@@ -128,14 +130,9 @@ public:
     const VisitOrder::Pass &pass = order_.passes()[static_cast<std::size_t>(pass_index)];
     const CpuPairs pairs = order_.pairs(velocities);
     const auto launch = table_->team[IndexOf<Stage, TeamStages>::value];
-    // Groups run from large to small, so the last chunks are the shortest and threads end together.
-    const int groups = pass.last_group - pass.first_group;
-    const int chunks = std::min(groups, 8 * static_cast<int>(workers_.thread_count()));
-    workers_.loop(chunks, [&](int c) {
-      const int first = pass.first_group + static_cast<int>(static_cast<std::int64_t>(groups) * c / chunks);
-      const int last = pass.first_group + static_cast<int>(static_cast<std::int64_t>(groups) * (c + 1) / chunks);
-      launch(&stage, pairs, order_.group_begin(first), order_.group_begin(last));
-    });
+    by_part(
+        pass.last_group - pass.first_group, [&](unsigned part) { return order_.part_begin(pass_index, part); },
+        [&](int group) { launch(&stage, pairs, order_.group_begin(group), order_.group_begin(group + 1)); });
   }
 
   // ---------------------------------------------------------------------------------------------------- time ---
@@ -151,6 +148,27 @@ public:
   void lap(Schedule &schedule, int stage, std::uint64_t items) { schedule.record(stage, lap(), items); }
 
 private:
+  // function(i) for all i of the parts, which are begin(part) <= i < begin(part + 1). A thread works through its own part, where its cache has most of what
+  // it needs, then helps with the others.
+  template <class Begin, class F> void by_part(int count, Begin &&begin, F &&function) {
+    const unsigned parts = workers_.thread_count();
+    for (unsigned part = 0; part < parts; ++part) next_of_part_[part].value.store(begin(part), std::memory_order_relaxed);
+    workers_.loop(count, [&](int) {
+      for (unsigned i = 0, part = Workers::current(); i < parts; ++i, ++part) {
+        if (part >= parts) part = 0;
+        const int next = next_of_part_[part].value.fetch_add(1, std::memory_order_relaxed);
+        if (next >= begin(part + 1)) continue;
+        function(next);
+        return;
+      }
+    });
+  }
+  // All groups, each by the thread that has it in every stage.
+  template <class F> void for_each_group(F &&function) {
+    by_part(
+        order_.group_count(), [&](unsigned part) { return order_.groups_of_part(part); },
+        [&](int place) { function(order_.group_of_part(place)); });
+  }
   template <class F> void in_chunks(int count, int least, F &&function) {
     const int per_chunk = std::max(least, count / (8 * static_cast<int>(workers_.thread_count())));
     workers_.loop((count + per_chunk - 1) / per_chunk,
@@ -173,6 +191,10 @@ private:
   const KernelTable *table_;
   RadixSort sort_;
   VisitOrder order_;
+  struct alignas(64) NextOfPart {
+    std::atomic<int> value{0};
+  };
+  std::vector<NextOfPart> next_of_part_; // of each part
   std::chrono::steady_clock::time_point lap_ = std::chrono::steady_clock::now();
 };
 

@@ -1,14 +1,14 @@
-// How neighbour lists and constraint records lie in memory on the CPU: in the order of the visits, a lane per block of cells.
+// How neighbour lists and constraint records lie in memory on the CPU: in the order of the visits, with a few blocks of cells to a lane.
 //
-// Particles are visited in batches of W, one of each of W blocks; batches of the same W blocks follow each other. For batch b and pair step t
+// Particles are visited in batches of W, one of each lane of a group; the batches of a group follow each other. For batch b and pair step t
 // (offsets[b] <= t < offsets[b + 1]):
 //
 //   index[t][W]         the neighbour of each lane; the particle itself where a lane's list has ended (with gradient 0)
 //   gradient[t][3][W]
 //   record[b][field][W]
 //
-// Blocks run from large to small, so the lanes in use of a batch are its first active[b]. The others repeat a particle of the same block, or a spare row
-// that belongs to no particle where there is no block: what they do is harmless, and nothing of it is kept.
+// Lanes run from long to short, so those in use of a batch are its first active[b]. The others repeat a particle of the same lane, or a spare row that
+// belongs to no particle where a lane has no block: what they do is harmless, and nothing of it is kept.
 #pragma once
 
 #include <cstdint>

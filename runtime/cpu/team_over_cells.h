@@ -1,4 +1,4 @@
-// The CPU team for stages over neighbours: a lane is a block of cells. Lane and Real are both packs, sums need no folding.
+// The CPU team for stages over neighbours: a lane works through a few blocks of cells. Lane and Real are both packs, sums need no folding.
 #pragma once
 
 #include "cpu/cpu_views.h"

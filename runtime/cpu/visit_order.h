@@ -16,7 +16,7 @@ public:
   // Visits that may run at once: blocks of one colour, particles of one material.
   struct Pass {
     int material, colour;
-    int first_group, last_group; // a group: W blocks worked through in lockstep
+    int first_group, last_group; // a group: W lanes, each a few blocks, worked through in lockstep
     std::int64_t particles;
   };
 
@@ -52,7 +52,15 @@ public:
            3 * static_cast<std::ptrdiff_t>(width_) * offsets_[static_cast<std::size_t>(group_begin(group))];
   }
   const std::vector<Pass> &passes() const { return passes_; }
+  // The first group of a part, or the end of the last one. A pass is cut into a part for each thread, all passes near the same places: a thread that works
+  // on the same part of all of them finds in its cache what it wrote.
+  int part_begin(int pass, unsigned part) const {
+    return parts_[static_cast<std::size_t>(pass) * (threads_ + 1) + part].first_group;
+  }
   int batch_count() const { return batch_count_; }
+  // The groups of a part in all passes: group_of_part(i) for groups_of_part(part) <= i < groups_of_part(part + 1).
+  int groups_of_part(unsigned part) const { return groups_of_part_[part]; }
+  int group_of_part(int i) const { return group_of_part_[static_cast<std::size_t>(i)]; }
   int group_begin(int group) const { return group_first_batch_[static_cast<std::size_t>(group)]; }
   // Rows beyond the particles that idle lanes may write.
   static constexpr int spare_rows_per_pass = 16;
@@ -63,11 +71,20 @@ public:
 
 private:
   struct Entry {
-    std::uint64_t key; // pass, size descending, block
-    int block, material, size;
+    std::uint64_t key; // pass, part, size descending
+    int block, material, size, lane;
+  };
+  struct Part {
+    std::size_t first_entry, last_entry;
+    int first_group;
+  };
+  struct PassSize {
+    int blocks;
+    std::int64_t particles, so_far;
   };
   void list_entries(const CellTable &table);
-  void make_groups(const CellTable &table);
+  void make_groups(Workers &workers, const CellTable &table);
+  void fill_lanes(std::size_t part);
   void fill_group(const CellTable &table, int group, int pass_index);
 
   int width_;
@@ -76,11 +93,16 @@ private:
   int batch_count_ = 0;
   std::int64_t steps_ = 0;
   std::vector<Pass> passes_;
+  std::vector<Part> parts_; // of each pass: one a thread, and an end
+  std::vector<int> groups_of_part_;
+  std::vector<PassSize> pass_sizes_; // of all colours and materials
   std::vector<int> material_sizes_;
   HostArray<Entry> entries_;
   std::size_t entry_count_ = 0;
-  HostArray<int> group_first_batch_, group_first_entry_, group_pass_;
+  HostArray<int> group_first_batch_, group_first_entry_, group_pass_, group_of_part_;
   int group_count_ = 0;
+  HostArray<std::uint64_t> lane_loads_; // of each group
+  HostArray<int> lane_ranks_;
   HostArray<int> ids_, active_, offsets_, close_steps_, slots_;
   HostArray<int> indices_;
   HostArray<float> gradients_, records_;

@@ -1,6 +1,7 @@
 /* The order of the visits: every particle once, and no two that run at once write the same particle. */
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <map>
 #include <random>
 #include <set>
 #include <vector>
@@ -108,6 +109,10 @@ TEST_P(VisitOrderOf, VisitsEachOnceAndNeverTwoThatShareAParticle) {
     EXPECT_EQ(visits[i].times, 1) << i;
     EXPECT_EQ(visits[i].material, materials == 1 ? 0 : int(particles.materials[i])) << i;
   }
+  // Lanes in use are the first ones of a batch: none is counted that idles.
+  std::int64_t active = 0;
+  for (int batch = 0; batch < order.batch_count(); ++batch) active += order.pairs(nullptr).active[batch];
+  EXPECT_EQ(active, std::int64_t(visits.size()));
   // Room for every list.
   const CpuPairs pairs = order.pairs(nullptr);
   EXPECT_EQ(pairs.offsets[order.batch_count()], steps);
@@ -132,6 +137,73 @@ TEST_P(VisitOrderOf, VisitsEachOnceAndNeverTwoThatShareAParticle) {
 
 INSTANTIATE_TEST_SUITE_P(ColoursMaterialsWidths, VisitOrderOf,
                          testing::Combine(testing::Values(1, 2), testing::Values(1, 3), testing::Values(4, 16)));
+
+/* The particles of each block in the order of their visits. */
+std::map<int, std::vector<int>> visits_by_block(const SortedParticles &particles, unsigned threads) {
+  constexpr int width = 4;
+  const HostAllocator allocator;
+  Workers workers(threads, {});
+  VisitOrder order(allocator, width, threads);
+  order.reserve(particles.x.size(), 1);
+  order.arrange(workers, particles.table);
+  order.make_room();
+  const CpuPairs pairs = order.pairs(nullptr);
+  const int w = particles.table.colouring.block_width, *size = particles.table.grid.size;
+  std::map<int, std::vector<int>> blocks;
+  for (int batch = 0; batch < order.batch_count(); ++batch)
+    for (int lane = 0; lane < pairs.active[batch]; ++lane) {
+      const int particle = pairs.ids[batch * width + lane], cell = int(particles.keys[std::size_t(particle)]);
+      const int x = cell / size[2] / size[1] / w, y = cell / size[2] % size[1] / w, z = cell % size[2] / w;
+      blocks[(x * size[1] + y) * size[2] + z].push_back(particle);
+    }
+  return blocks;
+}
+
+TEST(VisitOrder, WithinABlockDoesNotDependOnTheNumberOfThreads) {
+  const SortedParticles particles(1500, {2, 2}, 1, 0.2f);
+  const auto alone = visits_by_block(particles, 1);
+  EXPECT_EQ(alone, visits_by_block(particles, 2));
+  EXPECT_EQ(alone, visits_by_block(particles, 7));
+}
+
+TEST(VisitOrder, GivesEachThreadItsShareOfEveryPassInOnePlace) {
+  const SortedParticles particles(6000, {1, 3}, 1, 0.2f);
+  constexpr int width = 4;
+  const HostAllocator allocator;
+  Workers workers(2, {});
+  VisitOrder order(allocator, width, 2);
+  order.reserve(particles.x.size(), 1);
+  order.arrange(workers, particles.table);
+  order.make_room();
+  const CpuPairs pairs = order.pairs(nullptr);
+  std::vector<int> times(std::size_t(order.passes().back().last_group));
+  for (unsigned part = 0; part < 2; ++part)
+    for (int i = order.groups_of_part(part); i < order.groups_of_part(part + 1); ++i)
+      ++times[std::size_t(order.group_of_part(i))];
+  for (const int count : times) EXPECT_EQ(count, 1);
+  std::int64_t lanes = 0;
+  for (int pass = 0; pass < int(order.passes().size()); ++pass) {
+    float least_of_second = 1, most_of_first = 0;
+    std::int64_t own[2] = {};
+    for (unsigned part = 0; part < 2; ++part)
+      for (int group = order.part_begin(pass, part); group < order.part_begin(pass, part + 1); ++group)
+        for (int batch = order.group_begin(group); batch < order.group_begin(group + 1); ++batch) {
+          own[part] += pairs.active[batch];
+          lanes += width;
+          for (int lane = 0; lane < pairs.active[batch]; ++lane) {
+            const float x = particles.x[std::size_t(pairs.ids[batch * width + lane])];
+            if (part == 0) most_of_first = std::max(most_of_first, x);
+            if (part == 1) least_of_second = std::min(least_of_second, x);
+          }
+        }
+    const auto share = double(own[0]) / double(order.passes()[std::size_t(pass)].particles);
+    EXPECT_GT(share, 0.45) << pass;
+    EXPECT_LT(share, 0.55) << pass;
+    EXPECT_LT(most_of_first, least_of_second + 2 * r * 1.0001f) << pass; // they may share one layer of cells
+  }
+  // Lanes are of like length.
+  EXPECT_LT(double(lanes) / 6000, 1.1);
+}
 
 TEST(VisitOrder, TheColouringThatThePaperGivesWouldConflict) {
   // 8 colours of single cells, 2r apart: the check above must be able to fail.
