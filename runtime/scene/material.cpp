@@ -23,7 +23,7 @@ LameParameters lame_of(const Moduli &m) { return {static_cast<float>(m.mu), stat
 
 VonMises make_von_mises(const loam_material_def &def, const Moduli &m) {
   const double bound = std::sqrt(2.0 / 3.0) * static_cast<double>(def.yield_stress);
-  return {lame_of(m), static_cast<float>(bound / (2 * m.mu))};
+  return {{lame_of(m)}, static_cast<float>(bound / (2 * m.mu))};
 }
 
 DruckerPrager make_drucker_prager(const loam_material_def &def, const Moduli &m) {
@@ -34,7 +34,7 @@ DruckerPrager make_drucker_prager(const loam_material_def &def, const Moduli &m)
   const double cohesive =
       std::sqrt(2.0 / 3.0) * 2 * cosine / (3 - sine) * 3 * static_cast<double>(def.cohesion) / (2 * m.mu);
   const double tip = sine > 1e-6 ? cohesive / slope : (cohesive > 0 ? 1.0 : 0.0);
-  return {lame_of(m), static_cast<float>(slope), static_cast<float>(cohesive), static_cast<float>(std::fmin(tip, 1.0))};
+  return {{lame_of(m)}, static_cast<float>(slope), static_cast<float>(cohesive), static_cast<float>(std::fmin(tip, 1.0))};
 }
 
 } // namespace
@@ -87,7 +87,7 @@ LawVariant make_law(const loam_material_def &def) {
   const Moduli m = moduli_of(def);
   switch (def.law) {
   case LOAM_LAW_ELASTIC:
-    return Elastic{lame_of(m)};
+    return Elastic{{lame_of(m)}};
   case LOAM_LAW_VON_MISES:
     return make_von_mises(def, m);
   default:

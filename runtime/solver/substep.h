@@ -83,7 +83,7 @@ template <class Executor> void Solver<Executor>::iterate(std::uint32_t iteration
 // For semi-implicit plasticity, matter is elastic inside the loop.
 template <class F> void with_plasticity(bool semi_implicit, const auto &law, StrainLimit limit, F &&f) {
   if (semi_implicit)
-    f(Elastic{law.lame}, limit);
+    f(Elastic{{law.lame}}, limit);
   else
     f(law, limit);
 }

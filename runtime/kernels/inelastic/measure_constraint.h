@@ -22,7 +22,7 @@ template <class Law, class Multiplier> struct MeasureConstraint {
     const Vec4<Real> own = team.velocity(p);
     const Constraint<Real> c = gather_constraint(team, p, substep, own.xyz());
     const Real lambda = team.field(p, Record::multiplier), h(substep);
-    const ConstraintResponse<Real> response = respond(law, limit, c.trial, c.H, c.history);
+    const ConstraintResponse<Real> response = respond(law, limit, c.trial, c.H, c.history, substep);
     const Real residual = response.value + c.inverse_volume / (h * h) * lambda;
     team.set_own_value(p, terms, ConstraintTerms::term_count, ConstraintTerms::residual_squared, residual * residual);
     team.set_own_value(p, terms, ConstraintTerms::term_count, ConstraintTerms::value_squared,
@@ -34,7 +34,8 @@ template <class Law, class Multiplier> struct MeasureConstraint {
     const HenckyStrain<Real> strain = hencky_strain(S, limit, limited);
     const Vec3<Real> u = {Real(up.x), Real(up.y), Real(up.z)};
     const Real deviator = dot(u, strain.deviator * u);
-    const Real tau = Real(2.0f * law.lame.mu) * deviator + Real(2.0f / 3.0f * law.lame.mu + law.lame.lambda) * strain.trace;
+    const Real stiffness = law.stiffness(c.history);
+    const Real tau = stiffness * (Real(law.twice_mu()) * deviator + Real(law.bulk()) * strain.trace);
     team.set_own_value(p, terms, ConstraintTerms::term_count, ConstraintTerms::stress_moment, tau / c.inverse_volume);
     team.set_own_value(p, terms, ConstraintTerms::term_count, ConstraintTerms::pair_moment,
                        team.field(p, Record::pair_moment) / h);

@@ -6,7 +6,7 @@
 // and is a template argument of the solve stages; a second form, the projected impulse tensor, sits beside this file.
 #pragma once
 
-#include "kernels/materials/law.h"
+#include "kernels/materials/project.h"
 #include "math/tensor_functions.h"
 
 namespace loam {
@@ -49,26 +49,27 @@ template <class T> LOAM_FN Mat3<T> inverse_transpose(const Mat3<T> &H) {
 
 template <class Law, class Real>
 LOAM_FN ConstraintResponse<Real> respond(const Law &law, StrainLimit limit, Sym3<Real> trial, const Mat3<Real> &H,
-                                         Real history) {
-  const Real third(1.0f / 3.0f), zero(0.0f), one(1.0f);
+                                         Real history, float substep) {
+  const Real third(1.0f / 3.0f), half(0.5f), zero(0.0f), one(1.0f);
   auto limited = zero > zero;
   const HenckyStrain<Real> strain = hencky_strain(trial, limit, limited);
-  const Real deviator_squared = frobenius_squared(strain.deviator);
-  Mapped<Real> mapped = {strain.trace, one, history};
-  if constexpr (Law::plastic) mapped = law.map(strain.trace, square_root(deviator_squared), history);
+  const HenckyStrain<Real> elastic = {law.elastic_trace(strain.trace, history), strain.deviator};
+  const HenckyStrain<Real> projected = project(law, elastic, zero, history, Flow<Real>{substep, one, one}).strain;
 
-  const Real twice_mu(2.0f * law.lame.mu), lambda(law.lame.lambda);
-  const Real strain_squared = mapped.scale * mapped.scale * deviator_squared + mapped.trace * mapped.trace * third;
-  const Real value = square_root(twice_mu * strain_squared + lambda * mapped.trace * mapped.trace);
+  const Real stiffness = law.stiffness(history);
+  const Real twice_mu = Real(law.twice_mu()) * stiffness, bulk = Real(law.bulk()) * stiffness;
+  const Real deviator_squared = frobenius_squared(projected.deviator), trace_squared = projected.trace * projected.trace;
+  const Real value = square_root(twice_mu * deviator_squared + bulk * trace_squared);
   // dC/dF is 0/0 at C = 0: strains below 1e-7 carry no constraint.
-  const auto strained = strain_squared > Real(1e-14f);
+  const auto strained = deviator_squared + third * trace_squared > Real(1e-14f);
   const Real reciprocal = select(strained, one / select(strained, value, one), zero);
 
-  const Real pressure = Real(2.0f / 3.0f * law.lame.mu + law.lame.lambda) * mapped.trace * reciprocal;
-  Sym3<Real> tau = add_diagonal((twice_mu * reciprocal * mapped.scale) * strain.deviator, pressure);
+  Sym3<Real> tau = add_diagonal((twice_mu * reciprocal) * projected.deviator, bulk * projected.trace * reciprocal);
   if constexpr (Law::plastic) {
-    const Sym3<Real> E = expm1_traceless((one - mapped.scale) * strain.deviator);
-    tau = (one + (strain.trace - mapped.trace) * third) * (tau + multiply_commuting(tau, E));
+    // times exp(trial - projected): the deviator by its series, the trace to third order
+    const Sym3<Real> E = expm1_traceless(strain.deviator + (zero - one) * projected.deviator);
+    const Real t = (strain.trace - projected.trace) * third;
+    tau = (one + t * (one + half * t * (one + third * t))) * (tau + multiply_commuting(tau, E));
   }
   return {select(strained, value, zero), full(tau) * inverse_transpose(H)};
 }
@@ -80,7 +81,7 @@ struct ScalarMultiplier {
   // (A stands for dC/dF F^nT here.) `state` is the multiplier lambda.
   template <class Law, class Real>
   LOAM_FN static Mat3<Real> impulse(const Law &law, StrainLimit limit, const Constraint<Real> &c, Real state[state_count]) {
-    const ConstraintResponse<Real> response = respond(law, limit, c.trial, c.H, c.history);
+    const ConstraintResponse<Real> response = respond(law, limit, c.trial, c.H, c.history, c.substep);
     const Mat3<Real> &A = response.derivative;
     const Mat3<Real> AM = A * full(c.gradient_square);
     const Real h(c.substep);

@@ -5,7 +5,7 @@
 
 #include "kernels/inelastic/kinematics.h"
 #include "kernels/inelastic/record.h"
-#include "kernels/materials/law.h"
+#include "kernels/materials/project.h"
 #include "math/tensor_functions.h"
 
 namespace loam {
@@ -40,13 +40,15 @@ template <class Law> struct UpdateStrain {
     const HenckyStrain<Real> strain = hencky_strain(S, limit, limited);
     if (any(limited)) team.count(p, limited, strain_limited);
     if constexpr (Law::plastic) {
-      const Real norm = square_root(frobenius_squared(strain.deviator));
-      const Mapped<Real> mapped = law.map(strain.trace, norm, team.field(p, Record::history));
+      const Real history = team.field(p, Record::history);
+      const HenckyStrain<Real> elastic = {law.elastic_trace(strain.trace, history), strain.deviator};
+      const Projection<Real> mapped = project(law, elastic, zero, history, Flow<Real>{substep, one, one});
       // b - I = (1 + a)(I + E) - I = a I + E + a E with 1 + a = exp(2 tr/3) and I + E = exp(2 dev)
-      const Real a = expm1_series(Real(2.0f) * third * mapped.trace);
-      const Sym3<Real> E = expm1_traceless((Real(2.0f) * mapped.scale) * strain.deviator);
+      const Real a = expm1_series(Real(2.0f) * third * mapped.strain.trace);
+      const Sym3<Real> E = expm1_traceless(Real(2.0f) * mapped.strain.deviator);
       const Sym3<Real> projected = add_diagonal((one + a) * E, a);
-      const auto moved = either(mapped.scale < one, either(mapped.trace<strain.trace, mapped.trace> strain.trace));
+      const Real trace = mapped.strain.trace;
+      const auto moved = either(mapped.scale < one, either(trace<strain.trace, trace> strain.trace));
       S = select(either(moved, limited), projected, S);
       // Granular matter with too few neighbours is loose: its neighbourhood cannot tell a strain.
       const auto alone = team.own_count(p, neighbour_counts) < Real(3.0f);

@@ -10,22 +10,23 @@
 
 namespace loam {
 
-struct DruckerPrager {
+struct DruckerPrager : Isotropic {
   static constexpr bool plastic = true;
-  static constexpr bool has_history = true; // the volume gained at the tip, as a logarithm
+  static constexpr bool has_history = true;                // the volume gained at the tip, as a logarithm
+  static constexpr bool resists_zero_energy_modes = false; // grains that move apart are loose
   static constexpr double greatest_strain = 0.5;
-  LameParameters lame;
   float slope;
   float cohesive_deviator; // slope * tip, given apart because the tip runs to infinity as phi goes to 0
   float tip;
 
-  template <class T> LOAM_FN Mapped<T> map(T trace, T deviator_norm, T history) const {
-    const T corrected = trace + history, zero(0.0f);
-    const T limit = T(cohesive_deviator) - T(slope) * corrected;
+  template <class T> LOAM_FN T elastic_trace(T trace, T history) const { return trace + history; }
+
+  template <class T> LOAM_FN Mapped<T> map(T trace, T deviator_norm, T, Flow<T>) const {
+    const T zero(0.0f);
+    const T limit = T(cohesive_deviator) - T(slope) * trace;
     const T scale = select(deviator_norm > limit, limit / maximum(deviator_norm, T(1e-30f)), T(1.0f));
-    const auto beyond_tip = corrected >= T(tip);
-    return {select(beyond_tip, T(tip), corrected), select(beyond_tip, zero, scale),
-            select(beyond_tip, corrected - T(tip), zero)};
+    const auto beyond_tip = trace >= T(tip);
+    return {select(beyond_tip, T(tip), trace), select(beyond_tip, zero, scale), select(beyond_tip, trace - T(tip), zero)};
   }
 };
 

@@ -5,13 +5,8 @@
 
 namespace loam {
 
-struct Elastic {
-  static constexpr bool plastic = false;
-  static constexpr bool has_history = false;
+struct Elastic : Isotropic {
   static constexpr double greatest_strain = 2.0;
-  LameParameters lame;
-
-  template <class T> LOAM_FN Mapped<T> map(T trace, T, T history) const { return {trace, T(1.0f), history}; }
 };
 
 } // namespace loam

@@ -7,14 +7,12 @@
 
 namespace loam {
 
-struct VonMises {
+struct VonMises : Isotropic {
   static constexpr bool plastic = true;
-  static constexpr bool has_history = false;
   static constexpr double greatest_strain = 0.5;
-  LameParameters lame;
   float greatest_deviator; // |dev e| at yield: sqrt(2/3) yield_stress / (2 mu)
 
-  template <class T> LOAM_FN Mapped<T> map(T trace, T deviator_norm, T history) const {
+  template <class T> LOAM_FN Mapped<T> map(T trace, T deviator_norm, T history, Flow<T>) const {
     const T limit(greatest_deviator);
     return {trace, select(deviator_norm > limit, limit / maximum(deviator_norm, limit), T(1.0f)), history};
   }
