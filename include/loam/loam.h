@@ -5,6 +5,7 @@
  *   base.h       status codes, ids, hooks (allocator, job system, log), version
  *   world.h      create a world, step it, ask what it cost
  *   material.h   what matter is made of
+ *   material_design.h   materials by name, and by what can be seen of them
  *   collider.h   planes and triangle meshes that matter runs into
  *   particles.h  fill volumes with particles, read the particles back
  *
@@ -17,6 +18,7 @@
 #include <loam/base.h>
 #include <loam/collider.h>
 #include <loam/material.h>
+#include <loam/material_design.h>
 #include <loam/particles.h>
 #include <loam/world.h>
 

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <initializer_list>
 #include <new>
+#include <string>
 
 #include "scene/checks.h"
 #include "scene/world.h"
@@ -36,16 +38,23 @@ template <class F> loam_status guarded(const loam_world *world, F &&function) no
   return status;
 }
 
-// A copy of a host's definition: fields that an older, smaller struct lacks keep the values of `defaults`. `first_size` is the struct's size in
-// the first version that had it.
+// Throws for a struct size that neither this version nor an earlier one had.
 template <class Def>
-Def read_definition(const Def *def, const char *name, const Def &defaults, std::size_t first_size = sizeof(Def)) {
+void check_size(const char *what, std::size_t size, std::initializer_list<std::size_t> earlier, const char *advice) {
+  if (size == sizeof(Def) || std::find(earlier.begin(), earlier.end(), size) != earlier.end()) return;
+  std::string known;
+  for (const std::size_t each : earlier) known += std::to_string(each) + ", ";
+  throw Error(LOAM_ERROR_INVALID_ARGUMENT,
+              format("%s is %zu; this library knows %s%zu%s", what, size, known.c_str(), sizeof(Def), advice));
+}
+
+// A copy of a host's definition: fields that an older, smaller struct lacks keep the values of `defaults`. `earlier` are the sizes that the struct
+// had in earlier versions.
+template <class Def>
+Def read_definition(const Def *def, const char *name, const Def &defaults, std::initializer_list<std::size_t> earlier = {}) {
   check_pointer(def, name);
-  if (def->struct_size < first_size || def->struct_size > sizeof(Def))
-    throw Error(LOAM_ERROR_INVALID_ARGUMENT,
-                format("%s->struct_size is %u; this library knows %zu to %zu. Fill the definition with its "
-                       "default function, and do not run a host against an older library",
-                       name, def->struct_size, first_size, sizeof(Def)));
+  check_size<Def>((std::string(name) + "->struct_size").c_str(), def->struct_size, earlier,
+                  ". Fill the definition with its default function, and do not run a host against an older library");
   Def copy = defaults;
   std::memcpy(static_cast<void *>(&copy), def, def->struct_size);
   copy.struct_size = sizeof(Def);
@@ -54,11 +63,10 @@ Def read_definition(const Def *def, const char *name, const Def &defaults, std::
 
 // Writes defaults or results into a host's struct of `size` bytes, with struct_size set to that.
 template <class Def>
-void write_definition(Def *def, const char *name, std::size_t size, const Def &value, std::size_t first_size = sizeof(Def)) {
+void write_definition(Def *def, const char *name, std::size_t size, const Def &value,
+                      std::initializer_list<std::size_t> earlier = {}) {
   check_pointer(def, name);
-  if (size < first_size || size > sizeof(Def))
-    throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("the size of %s is given as %zu; this library knows %zu to %zu", name,
-                                                    size, first_size, sizeof(Def)));
+  check_size<Def>(("the size of " + std::string(name)).c_str(), size, earlier, "");
   Def copy = value;
   copy.struct_size = static_cast<std::uint32_t>(size);
   std::memcpy(static_cast<void *>(def), &copy, size);

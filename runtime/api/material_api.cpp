@@ -4,14 +4,21 @@
 using namespace loam;
 
 loam_status loam_material_def_default(uint32_t law, loam_material_def *def, size_t size) {
-  return guarded(nullptr, [&] { write_definition(def, "def", size, default_material(law)); });
+  return guarded(nullptr, [&] { write_definition(def, "def", size, default_material(law), {first_material_size}); });
 }
 
 loam_status loam_material_create(loam_world *world, const loam_material_def *def, loam_material_id *material) {
   return guarded(world, [&] {
     check_pointer(world, "world");
     check_pointer(material, "material");
-    *material = world->create_material(read_definition(def, "def", loam_material_def{}));
+    *material = world->create_material(read_definition(def, "def", loam_material_def{}, {first_material_size}));
+  });
+}
+
+loam_status loam_material_set(loam_world *world, loam_material_id material, const loam_material_def *def) {
+  return guarded(world, [&] {
+    check_pointer(world, "world");
+    world->set_material(material, read_definition(def, "def", loam_material_def{}, {first_material_size}));
   });
 }
 
@@ -26,6 +33,6 @@ loam_status loam_material_get(const loam_world *world, loam_material_id material
   return guarded(world, [&] {
     check_pointer(world, "world");
     check_pointer(def, "def");
-    write_definition(def, "def", def->struct_size, world->material(material));
+    write_definition(def, "def", def->struct_size, world->material(material), {first_material_size});
   });
 }

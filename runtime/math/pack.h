@@ -48,6 +48,14 @@ LOAM_FN Pack maximum(Pack a, Pack b) { return select(a > b, a, b); }
 LOAM_FN Mask both(Mask a, Mask b) { return {hn::And(a.native, b.native)}; }
 LOAM_FN Mask either(Mask a, Mask b) { return {hn::Or(a.native, b.native)}; }
 LOAM_FN Mask opposite(Mask a) { return {hn::Not(a.native)}; }
+LOAM_FN Pack power_of_two(Pack n) {
+  const hn::RebindToSigned<FloatTag> tag;
+  return hn::BitCast(FloatTag(), hn::ShiftLeft<23>(hn::Add(hn::ConvertTo(tag, n.native), hn::Set(tag, 127))));
+}
+LOAM_FN Pack binary_exponent(Pack a) {
+  const hn::RebindToSigned<FloatTag> tag;
+  return hn::ConvertTo(FloatTag(), hn::ShiftRight<23>(hn::Sub(hn::BitCast(tag, a.native), hn::Set(tag, 0x3f3504f3))));
+}
 LOAM_FN bool any(Mask m) { return !hn::AllFalse(FloatTag(), m.native); }
 LOAM_FN int count(Mask m) { return static_cast<int>(hn::CountTrue(FloatTag(), m.native)); }
 // Bit l is lane l.

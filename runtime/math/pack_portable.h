@@ -48,6 +48,12 @@ LOAM_FN Pack maximum(Pack a, Pack b) { return select(a > b, a, b); }
 LOAM_FN Mask both(Mask a, Mask b) { return {a.native & b.native}; }
 LOAM_FN Mask either(Mask a, Mask b) { return {a.native | b.native}; }
 LOAM_FN Mask opposite(Mask a) { return {~a.native}; }
+LOAM_FN Pack power_of_two(Pack n) {
+  return reinterpret_cast<NativePack>((__builtin_convertvector(n.native, NativeMask) + 127) * (1 << 23));
+}
+LOAM_FN Pack binary_exponent(Pack a) {
+  return __builtin_convertvector((reinterpret_cast<NativeMask>(a.native) - 0x3f3504f3) >> 23, NativePack);
+}
 LOAM_FN bool any(Mask m) { return (m.native[0] | m.native[1] | m.native[2] | m.native[3]) != 0; }
 LOAM_FN int count(Mask m) { return -(m.native[0] + m.native[1] + m.native[2] + m.native[3]); }
 LOAM_FN unsigned mask_bits(Mask m) {

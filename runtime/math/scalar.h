@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 #include "math/qualifiers.h"
 
@@ -22,6 +23,20 @@ LOAM_FN bool any(bool mask) { return mask; }
 LOAM_FN bool both(bool a, bool b) { return a && b; }
 LOAM_FN bool either(bool a, bool b) { return a || b; }
 LOAM_FN bool opposite(bool a) { return !a; }
+
+// 2^n for an integer n from -126 to 127.
+LOAM_FN float power_of_two(float n) {
+  const std::int32_t bits = (static_cast<std::int32_t>(n) + 127) * (1 << 23);
+  float result;
+  memcpy(&result, &bits, sizeof result);
+  return result;
+}
+// The integer e for which a / 2^e lies between the square roots of 1/2 and of 2; a is positive and normal.
+LOAM_FN float binary_exponent(float a) {
+  std::int32_t bits;
+  memcpy(&bits, &a, sizeof bits);
+  return static_cast<float>((bits - 0x3f3504f3) >> 23);
+}
 
 // True for neither infinity nor NaN, whatever the compiler assumes about arithmetic.
 LOAM_FN bool is_finite(float a) { return fabsf(a) <= 3.402823466e+38f; }

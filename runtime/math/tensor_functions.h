@@ -6,6 +6,7 @@
 // machine.
 #pragma once
 
+#include "math/functions.h"
 #include "math/matrix.h"
 
 namespace loam {
@@ -109,6 +110,47 @@ template <class T> LOAM_FN Sym3<T> from_eigen(const Mat3<T> &v, const T f[3]) {
   Sym3<T> sum = zero_symmetric<T>();
   for (int k = 0; k < 3; ++k) add_square(sum, f[k], Vec3<T>{v.m[0][k], v.m[1][k], v.m[2][k]});
   return sum;
+}
+
+// The spectrum of a traceless symmetric tensor without its eigenvectors: values[0] is the eigenvalue farthest from 0, which is also the one that no
+// other comes close to, so that the projector onto its direction is well conditioned. Across it, the tensor is its mean plus `difference`, of
+// eigenvalues +-half_gap. No rotations: closed forms only.
+template <class T> struct Spectrum {
+  T values[3];
+  Sym3<T> projector, difference;
+  T half_gap;
+};
+template <class T> LOAM_FN Spectrum<T> spectrum_of_traceless(const Sym3<T> &a) {
+  const T zero(0.0f), one(1.0f), half(0.5f);
+  // In the scale of its norm, so that the determinant cannot underflow.
+  const T norm = square_root(frobenius_squared(a));
+  const auto some = norm > T(1e-18f);
+  const Sym3<T> A = (one / select(some, norm, one)) * a;
+  const Sym3<T> A2 = square(A);
+  // The eigenvalues are 2 sqrt(J2 / 3) cos of a third of an angle whose cosine is |det| / (2 sqrt(J2 / 3)^3), here with J2 = 1/2.
+  const T det = determinant(A);
+  const T cosine = minimum(absolute(det) * T(7.34846923f), one); // sqrt(54)
+  const T size = T(0.81649658f) * cosine_of_third(cosine);       // sqrt(2/3)
+  const T first = select(det < zero, zero - size, size);
+  // (A - l1)(A - l2) / ((l0 - l1)(l0 - l2)), with l1 + l2 = -l0 and l1 l2 = l0^2 - J2
+  const T square_of_first = first * first, inverse = one / (T(3.0f) * square_of_first - half);
+  Spectrum<T> result;
+  result.projector = quadratic(inverse * (square_of_first - half), inverse * first, A, inverse, A2);
+  const Sym3<T> rest = A + (zero - T(1.5f) * first) * result.projector;
+  result.difference = norm * add_diagonal(rest, half * first); // A - l0 P + (l0 / 2)(I - P)
+  result.half_gap = square_root(half * frobenius_squared(result.difference));
+  const T scaled = norm * first;
+  result.values[0] = scaled;
+  result.values[1] = result.half_gap - half * scaled;
+  result.values[2] = zero - result.half_gap - half * scaled;
+  return result;
+}
+// The tensor with the same directions and the eigenvalues f. Where f[1] - f[2] does not vanish with the gap the result is wrong; a function of one
+// value that is Lipschitz is fine.
+template <class T> LOAM_FN Sym3<T> with_values(const Spectrum<T> &s, const T f[3]) {
+  const T half(0.5f), mean = half * (f[1] + f[2]);
+  const T ratio = half * (f[1] - f[2]) / maximum(s.half_gap, T(1e-20f));
+  return add_diagonal((f[0] - mean) * s.projector + ratio * s.difference, mean);
 }
 
 // A Hencky strain, split: strain = (trace / 3) I + deviator.

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "scene/checks.h"
+#include "scene/material_presets.h"
 
 namespace loam {
 
@@ -21,9 +22,12 @@ Moduli moduli_of(const loam_material_def &def) {
 
 LameParameters lame_of(const Moduli &m) { return {static_cast<float>(m.mu), static_cast<float>(m.lambda)}; }
 
-VonMises make_von_mises(const loam_material_def &def, const Moduli &m) {
-  const double bound = std::sqrt(2.0 / 3.0) * static_cast<double>(def.yield_stress);
-  return {{lame_of(m)}, static_cast<float>(bound / (2 * m.mu))};
+LawVariant make_von_mises(const loam_material_def &def, const Moduli &m) {
+  const double in_strain = std::sqrt(2.0 / 3.0) / (2 * m.mu);
+  const auto at_yield = static_cast<float>(in_strain * static_cast<double>(def.yield_stress));
+  if (def.hardening_modulus == 0.0f) return VonMises{{lame_of(m)}, at_yield};
+  return VonMisesHardening{
+      {lame_of(m)}, at_yield, static_cast<float>(in_strain * static_cast<double>(def.hardening_modulus))};
 }
 
 DruckerPrager make_drucker_prager(const loam_material_def &def, const Moduli &m) {
@@ -37,10 +41,77 @@ DruckerPrager make_drucker_prager(const loam_material_def &def, const Moduli &m)
   return {{lame_of(m)}, static_cast<float>(slope), static_cast<float>(cohesive), static_cast<float>(std::fmin(tip, 1.0))};
 }
 
+Nacc make_nacc(const loam_material_def &def, const Moduli &m) {
+  const double beta = static_cast<double>(def.cohesion_ratio), slope = static_cast<double>(def.critical_state_slope);
+  const double squared = slope * slope / (1 + 2 * beta);
+  return {{lame_of(m)},
+          def.consolidation,
+          def.cohesion_ratio,
+          def.hardening_factor,
+          def.constant_hardness != 0 ? 0.0f : 1.0f,
+          static_cast<float>(std::sqrt(1.5) * 2 * m.mu / m.bulk),
+          static_cast<float>(squared),
+          static_cast<float>(1 / squared)};
+}
+
+HerschelBulkley make_herschel_bulkley(const loam_material_def &def, const Moduli &m) {
+  const double n = static_cast<double>(def.flow_exponent);
+  const double eta = std::exp2((n + 1) / 2) * static_cast<double>(def.consistency);
+  return {{lame_of(m)},
+          static_cast<float>(std::sqrt(2.0) * static_cast<double>(def.shear_yield_stress) / (2 * m.mu)),
+          static_cast<float>(std::fmax(eta / (2 * m.mu), 1e-30)),
+          def.flow_exponent};
+}
+
+StomakhinSnow make_stomakhin_snow(const loam_material_def &def, const Moduli &m) {
+  return {{lame_of(m)},
+          static_cast<float>(std::log1p(-static_cast<double>(def.critical_compression))),
+          static_cast<float>(std::log1p(static_cast<double>(def.critical_stretch))),
+          def.hardening_factor};
+}
+
+void check_plasticity(const loam_material_def &def) {
+  const auto range = [](const char *field, float value, double least, double most) {
+    check_range(field, static_cast<double>(value), least, most);
+  };
+  switch (def.law) {
+  case LOAM_LAW_VON_MISES:
+    check_above("yield_stress", static_cast<double>(def.yield_stress), 0, 1e13);
+    range("hardening_modulus", def.hardening_modulus, 0, 1e13);
+    break;
+  case LOAM_LAW_DRUCKER_PRAGER:
+    range("friction_angle", def.friction_angle, 0, 1.5);
+    range("cohesion", def.cohesion, 0, 1e12);
+    break;
+  case LOAM_LAW_NACC:
+    range("hardening_factor", def.hardening_factor, static_cast<double>(0.1f), 1000);
+    // beyond it p0 is bounded; a little room, since hosts divide in single precision
+    range("consolidation", def.consolidation, -2.000001 / static_cast<double>(def.hardening_factor), 1);
+    range("cohesion_ratio", def.cohesion_ratio, 0, 10);
+    range("critical_state_slope", def.critical_state_slope, static_cast<double>(0.01f), 10);
+    check_choice("constant_hardness", def.constant_hardness, 1);
+    break;
+  case LOAM_LAW_HERSCHEL_BULKLEY:
+    range("shear_yield_stress", def.shear_yield_stress, 0, 1e13);
+    check_above("consistency", static_cast<double>(def.consistency), 0, 1e13);
+    range("flow_exponent", def.flow_exponent, static_cast<double>(0.1f), 10);
+    break;
+  case LOAM_LAW_STOMAKHIN_SNOW:
+    range("critical_compression", def.critical_compression, 0, static_cast<double>(0.39f));
+    range("critical_stretch", def.critical_stretch, 0, static_cast<double>(0.64f));
+    range("hardening_factor", def.hardening_factor, 0, 1000);
+    break;
+  default:
+    break;
+  }
+}
+
 } // namespace
 
 loam_material_def default_material(std::uint32_t law) {
-  check_choice("law", law, LOAM_LAW_DRUCKER_PRAGER);
+  check_choice("law", law, LOAM_LAW_STOMAKHIN_SNOW);
+  if (law == LOAM_LAW_NACC) return preset("packed snow");
+  if (law == LOAM_LAW_HERSCHEL_BULKLEY) return preset("shaving foam");
   loam_material_def def = {};
   def.struct_size = sizeof def;
   def.law = law;
@@ -58,6 +129,15 @@ loam_material_def default_material(std::uint32_t law) {
     def.youngs_modulus = 1e6f;
     def.yield_stress = 5e3f;
     break;
+  case LOAM_LAW_STOMAKHIN_SNOW:
+    name = "snow";
+    def.density = 400;
+    def.youngs_modulus = 1.4e5f;
+    def.poissons_ratio = 0.2f;
+    def.hardening_factor = 10;
+    def.critical_compression = 0.025f;
+    def.critical_stretch = 0.0075f;
+    break;
   default:
     name = "dry sand";
     def.density = 1600;
@@ -70,15 +150,11 @@ loam_material_def default_material(std::uint32_t law) {
 }
 
 void check_material(const loam_material_def &def) {
-  check_choice("law", def.law, LOAM_LAW_DRUCKER_PRAGER);
+  check_choice("law", def.law, LOAM_LAW_STOMAKHIN_SNOW);
   check_range("density", static_cast<double>(def.density), 1e-3, 1e6);
   check_range("youngs_modulus", static_cast<double>(def.youngs_modulus), 1, 1e13);
   check_range("poissons_ratio", static_cast<double>(def.poissons_ratio), 0, static_cast<double>(0.49f));
-  if (def.law == LOAM_LAW_VON_MISES) check_above("yield_stress", static_cast<double>(def.yield_stress), 0, 1e13);
-  if (def.law == LOAM_LAW_DRUCKER_PRAGER) {
-    check_range("friction_angle", static_cast<double>(def.friction_angle), 0, 1.5);
-    check_range("cohesion", static_cast<double>(def.cohesion), 0, 1e12);
-  }
+  check_plasticity(def);
   if (std::memchr(def.name, 0, sizeof def.name) == nullptr)
     throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("name is not terminated within its %zu bytes", sizeof def.name));
 }
@@ -90,9 +166,17 @@ LawVariant make_law(const loam_material_def &def) {
     return Elastic{{lame_of(m)}};
   case LOAM_LAW_VON_MISES:
     return make_von_mises(def, m);
+  case LOAM_LAW_NACC:
+    return make_nacc(def, m);
+  case LOAM_LAW_HERSCHEL_BULKLEY:
+    return make_herschel_bulkley(def, m);
+  case LOAM_LAW_STOMAKHIN_SNOW:
+    return make_stomakhin_snow(def, m);
   default:
     return make_drucker_prager(def, m);
   }
 }
+
+double bulk_modulus(const loam_material_def &def) { return moduli_of(def).bulk; }
 
 } // namespace loam

@@ -186,6 +186,29 @@ loam_material_id loam_world::create_material(const loam_material_def &def) {
   return id;
 }
 
+void loam_world::set_material(loam_material_id id, const loam_material_def &def) {
+  Material &m = materials_.at(id, "material");
+  check_material(def);
+  check_unmapped();
+  const auto particles = static_cast<unsigned long long>(m.particles);
+  if (particles > 0 && def.law != m.def.law)
+    throw Error(LOAM_ERROR_IN_USE, format("law is %u; material \"%s\" has %llu particles of law %u, which must stay",
+                                          def.law, m.def.name, particles, m.def.law));
+  if (particles > 0 && def.density != m.def.density)
+    throw Error(LOAM_ERROR_IN_USE,
+                format("density is %g; material \"%s\" has %llu particles that were made with %g, which must stay",
+                       static_cast<double>(def.density), m.def.name, particles, static_cast<double>(m.def.density)));
+  const Material before = m;
+  m.def = def;
+  m.law = make_law(def);
+  try {
+    send_materials();
+  } catch (...) {
+    m = before;
+    throw;
+  }
+}
+
 void loam_world::destroy_material(loam_material_id id) {
   const Material &m = materials_.at(id, "material");
   if (m.particles > 0)

@@ -32,6 +32,7 @@ public:
   const loam::Backend &backend() const { return *backend_; }
 
   loam_material_id create_material(const loam_material_def &def);
+  void set_material(loam_material_id id, const loam_material_def &def);
   void destroy_material(loam_material_id id);
   const loam_material_def &material(loam_material_id id) const;
 

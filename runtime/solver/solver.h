@@ -258,7 +258,11 @@ template <class Executor> void Solver<Executor>::add_particles(const NewParticle
   executor_.set(now_.rest_volumes.data() + at, count, particles.volume);
   executor_.set(now_.log_volumes.data() + at, count, 0.0f);
   executor_.set(now_.strains.data() + 6 * at, 6 * count, 0.0f);
-  if (histories_in_use_) executor_.set(now_.histories.data() + at, count, 0.0f);
+  if (histories_in_use_) {
+    const float history =
+        std::visit([](const auto &law) { return law.initial_history(); }, materials_[particles.material].law);
+    executor_.set(now_.histories.data() + at, count, history);
+  }
   if (now_.free_distances.capacity() > 0) executor_.set(now_.free_distances.data() + at, count, 0.0f);
   count_ += count;
 }

@@ -11,6 +11,8 @@
 //                         Mapped<T> map(T trace, T deviator_norm, T history, Flow<T> flow) const     trial in, projected out
 //                       true: it moves the principal strains one by one:
 //                         T map_principal(T (&strain)[3], T history, Flow<T> flow) const   trial in, projected out; the history at the end
+//                         may_move(T lower, T upper)   a mask: whether it may move a strain between these bounds
+//   initial_history()               the history of particles when they are made
 //   elastic_trace(trace, history)   the trace that causes stress; what map() is given
 //   stiffness(history)              factor on both moduli
 #pragma once
@@ -42,6 +44,7 @@ struct Isotropic {
   static constexpr bool resists_zero_energy_modes = true;
   LameParameters lame;
 
+  LOAM_FN float initial_history() const { return 0.0f; }
   template <class T> LOAM_FN T elastic_trace(T trace, T) const { return trace; }
   template <class T> LOAM_FN T stiffness(T) const { return T(1.0f); }
   LOAM_FN float twice_mu() const { return 2.0f * lame.mu; }

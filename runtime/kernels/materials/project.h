@@ -13,30 +13,36 @@ template <class T> struct Projection {
 };
 
 // `trial.trace` is the law's elastic trace. `other_squared` adds to the squared norm of the deviator in the yield criterion: strain of the same kind
-// that is not in `trial` and is to be scaled alike.
+// that is not in `trial` and is to be scaled alike. A principal law has no such criterion and leaves it out.
 template <class Law, class T>
 LOAM_FN Projection<T> project(const Law &law, const HenckyStrain<T> &trial, T other_squared, T history, Flow<T> flow) {
   if constexpr (!Law::plastic) {
     return {trial, T(1.0f), history};
-  } else {
+  } else if constexpr (!Law::principal) {
     const T norm = square_root(frobenius_squared(trial.deviator) + other_squared);
-    if constexpr (!Law::principal) {
-      const Mapped<T> mapped = law.map(trial.trace, norm, history, flow);
-      return {{mapped.trace, mapped.scale * trial.deviator}, mapped.scale, mapped.history};
-    } else {
-      const T third(1.0f / 3.0f);
-      const Eigen3<T> eigen = eigen_decomposition(trial.deviator);
+    const Mapped<T> mapped = law.map(trial.trace, norm, history, flow);
+    return {{mapped.trace, mapped.scale * trial.deviator}, mapped.scale, mapped.history};
+  } else {
+    Projection<T> result = {trial, T(1.0f), history};
+    const T third_of_trace = T(1.0f / 3.0f) * trial.trace, norm = square_root(frobenius_squared(trial.deviator));
+    const T reach = T(0.81649668f) * norm; // no eigenvalue of the deviator is farther from 0 than sqrt(2/3) of its norm
+    if (any(law.may_move(third_of_trace - reach, third_of_trace + reach))) {
+      const Spectrum<T> spectrum = spectrum_of_traceless(trial.deviator);
       T strain[3];
-      for (int k = 0; k < 3; ++k) strain[k] = eigen.values[k] + third * trial.trace;
-      Projection<T> result;
+      for (int k = 0; k < 3; ++k) strain[k] = spectrum.values[k] + third_of_trace;
+      auto moved = norm < T(0.0f);
+      const T before[3] = {strain[0], strain[1], strain[2]};
       result.history = law.map_principal(strain, history, flow);
-      result.strain.trace = strain[0] + (strain[1] + strain[2]);
-      for (int k = 0; k < 3; ++k) strain[k] = strain[k] - third * result.strain.trace;
-      result.strain.deviator = from_eigen(eigen.vectors, strain);
-      const T tiny(1e-12f);
-      result.scale = minimum(square_root(frobenius_squared(result.strain.deviator)) / maximum(norm, tiny), T(1.0f));
-      return result;
+      for (int k = 0; k < 3; ++k) moved = either(moved, either(strain[k]<before[k], strain[k]> before[k]));
+      result.history = select(moved, result.history, history);
+      const T trace = strain[0] + (strain[1] + strain[2]);
+      for (T &e : strain) e = e - T(1.0f / 3.0f) * trace;
+      result.strain.trace = select(moved, trace, trial.trace);
+      result.strain.deviator = select(moved, with_values(spectrum, strain), trial.deviator);
+      const T scaled = square_root(frobenius_squared(result.strain.deviator)) / maximum(norm, T(1e-20f));
+      result.scale = select(moved, minimum(scaled, T(1.0f)), T(1.0f));
     }
+    return result;
   }
 }
 
