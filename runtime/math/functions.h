@@ -6,9 +6,9 @@
 
 namespace loam {
 
-// The natural logarithm; absolute error 6e-8 + 1e-7 |result|. The argument is clamped to [1.2e-38, 3e38]; NaN counts as the least.
+// The natural logarithm; absolute error 6e-8 + 1e-7 |result|. The argument is clamped to [1.2e-38, 1e38]; NaN counts as the least.
 template <class T> LOAM_FN T logarithm(T a) {
-  const T y = minimum(maximum(a, T(1.2e-38f)), T(3e38f));
+  const T y = minimum(maximum(a, T(1.2e-38f)), T(1e38f));
   const T e = binary_exponent(y), m = y * power_of_two(T(0.0f) - e);
   // log m = 2 atanh(s), s = (m - 1) / (m + 1); a minimax fit of atanh(s) / s in s^2
   const T s = (m - T(1.0f)) / (m + T(1.0f)), z = s * s;
