@@ -100,6 +100,16 @@ TEST(Base, DefaultsAreThoseOfTheHeaders) {
   EXPECT_EQ(material.density, 1500.0f);
   ASSERT_EQ(loam_material_def_default(LOAM_LAW_ELASTIC, &material, sizeof material), LOAM_OK);
   EXPECT_EQ(material.youngs_modulus, 1e5f);
+  ASSERT_EQ(loam_material_def_default(LOAM_LAW_NACC, &material, sizeof material), LOAM_OK);
+  EXPECT_STREQ(material.name, "packed snow");
+  EXPECT_EQ(material.law, unsigned(LOAM_LAW_NACC));
+  ASSERT_EQ(loam_material_def_default(LOAM_LAW_HERSCHEL_BULKLEY, &material, sizeof material), LOAM_OK);
+  EXPECT_STREQ(material.name, "shaving foam");
+  EXPECT_EQ(material.law, unsigned(LOAM_LAW_HERSCHEL_BULKLEY));
+  ASSERT_EQ(loam_material_def_default(LOAM_LAW_STOMAKHIN_SNOW, &material, sizeof material), LOAM_OK);
+  EXPECT_EQ(material.critical_compression, 0.025f);
+  EXPECT_EQ(material.critical_stretch, 0.0075f);
+  EXPECT_EQ(material.hardening_factor, 10.0f);
 
   loam_collider_def collider;
   ASSERT_EQ(loam_collider_def_default(&collider, sizeof collider), LOAM_OK);
@@ -134,7 +144,7 @@ TEST(Base, DefaultFunctionsRefuseNullAndUnknownSizesAndWriteNothing) {
   check(loam_material_def{},
         [](loam_material_def *def, std::size_t size) { return loam_material_def_default(LOAM_LAW_ELASTIC, def, size); });
   loam_material_def def;
-  for (const std::uint32_t law : {3u, 0xffffffffu}) {
+  for (const std::uint32_t law : {6u, 0xffffffffu}) {
     EXPECT_EQ(loam_material_def_default(law, &def, sizeof def), LOAM_ERROR_INVALID_ARGUMENT);
     test::expect_error_names({"law", std::to_string(law)});
   }

@@ -96,8 +96,8 @@ public:
 
   loam_world *get() const { return world_; }
 
-  /* Material, planes and particles of a scene. */
-  void add(const Scene &scene);
+  /* Material, planes and particles of a scene; answers with the material. */
+  loam_material_id add(const Scene &scene);
 
   void step(float seconds);
   loam_statistics statistics() const;

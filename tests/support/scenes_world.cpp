@@ -49,7 +49,7 @@ World::World(const loam_world_def &def) { require(loam_world_create(&def, &world
 
 World::~World() { loam_world_destroy(world_); }
 
-void World::add(const Scene &scene) {
+loam_material_id World::add(const Scene &scene) {
   loam_material_id material = 0;
   require(loam_material_create(world_, &scene.material, &material), "loam_material_create");
 
@@ -72,6 +72,7 @@ void World::add(const Scene &scene) {
   def.velocities = scene.velocities.empty() ? nullptr : scene.velocities.data();
   def.volume = scene.volume();
   require(loam_particles_add(world_, &def, nullptr), "loam_particles_add");
+  return material;
 }
 
 void World::step(float seconds) { require(loam_world_step(world_, seconds), "loam_world_step"); }

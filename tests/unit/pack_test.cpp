@@ -9,7 +9,9 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+#include "kernels/materials/project.h"
 #include "math/tensor_functions.h"
+#include "scene/material.h"
 #include "support/tensors.h"
 
 namespace loam {
@@ -113,6 +115,63 @@ TEST(Pack, TensorFunctionsHaveTheBitsOfTheScalarText) {
       EXPECT_EQ(bits(Lanes(back.xx)[l]), bits(one_back.xx));
     }
   }
+}
+
+TEST(Pack, ElementaryFunctionsHaveTheBitsOfTheScalarText) {
+  RandomTensors random(19);
+  for (int k = 0; k < 2000; ++k) {
+    float x[4];
+    for (float &value : x) value = float(random.between(-90, 90));
+    const Pack a = Pack::load_unaligned(x);
+    const Lanes power(exponential(a)), logarithms(logarithm(absolute(a))), exponent(binary_exponent(exponential(a)));
+    const Lanes sine(sinh_to_two(absolute(a) * Pack(0.02f))), cosine(cosine_of_third(absolute(a) * Pack(0.01f)));
+    for (int l = 0; l < 4; ++l) {
+      EXPECT_EQ(bits(power[l]), bits(exponential(x[l])));
+      EXPECT_EQ(bits(logarithms[l]), bits(logarithm(std::fabs(x[l]))));
+      EXPECT_EQ(exponent[l], binary_exponent(exponential(x[l])));
+      EXPECT_EQ(bits(sine[l]), bits(sinh_to_two(std::fabs(x[l]) * 0.02f)));
+      EXPECT_EQ(bits(cosine[l]), bits(cosine_of_third(std::fabs(x[l]) * 0.01f)));
+    }
+  }
+}
+
+/* Every law, with lanes that yield in different ways beside lanes that do not. */
+TEST(Pack, ReturnMappingsHaveTheBitsOfTheScalarText) {
+  RandomTensors random(23);
+  loam_material_def metal = default_material(LOAM_LAW_VON_MISES), thickening = default_material(LOAM_LAW_HERSCHEL_BULKLEY);
+  metal.hardening_modulus = 1e5f;
+  thickening.flow_exponent = 3;
+  std::vector<loam_material_def> materials = {metal, thickening};
+  for (std::uint32_t law = 0; law <= LOAM_LAW_STOMAKHIN_SNOW; ++law) materials.push_back(default_material(law));
+  const double sizes[4] = {0.05, 1e-4, 0.2, 0.01}, histories[4] = {-0.002, 0.01, -0.01, 0};
+  for (const loam_material_def &def : materials)
+    for (int k = 0; k < 200; ++k) {
+      float e[4][7];
+      for (int l = 0; l < 4; ++l) {
+        const test::Matrix strain = random.symmetric(random.vector(sizes[l]));
+        const Sym3<float> d = test::narrow(test::deviator(strain));
+        const float values[7] = {d.xx, d.yy, d.zz, d.xy, d.xz, d.yz, float(strain.trace())};
+        std::copy(values, values + 7, e[l]);
+      }
+      const auto lanes = [&](int i) { return pack_of(e[0][i], e[1][i], e[2][i], e[3][i]); };
+      const Pack history = pack_of(float(histories[0]), float(histories[1]), float(histories[2]), float(histories[3]));
+      const HenckyStrain<Pack> trial = {lanes(6), tensor<Pack>(lanes)};
+      std::visit(
+          [&](const auto &law) {
+            const Flow<Pack> flow = {1e-3f, Pack(0.7f), Pack(0.4f)};
+            const Projection<Pack> packed = project(law, trial, Pack(1e-6f), history, flow);
+            for (int l = 0; l < 4; ++l) {
+              const HenckyStrain<float> one = {e[l][6], tensor<float>([&](int i) { return e[l][i]; })};
+              const Projection<float> expected =
+                  project(law, one, 1e-6f, float(histories[l]), Flow<float>{1e-3f, 0.7f, 0.4f});
+              EXPECT_EQ(bits(Lanes(packed.strain.trace)[l]), bits(expected.strain.trace)) << def.law;
+              EXPECT_EQ(bits(Lanes(packed.strain.deviator.xy)[l]), bits(expected.strain.deviator.xy)) << def.law;
+              EXPECT_EQ(bits(Lanes(packed.scale)[l]), bits(expected.scale)) << def.law;
+              EXPECT_EQ(bits(Lanes(packed.history)[l]), bits(expected.history)) << def.law;
+            }
+          },
+          make_law(def));
+    }
 }
 
 } // namespace
