@@ -42,13 +42,38 @@ void RatioTable::ReportRuns(const std::vector<Run> &runs) {
     rows_.push_back({name.substr(0, slash), std::strtol(name.c_str() + slash + 1, nullptr, 10),
                      counter(run.counters, solve_rate_counter), counter(run.counters, step_rate_counter),
                      counter(run.counters, "ns/particle/substep"), counter(run.counters, "bytes/particle"),
-                     stages_of(run.counters)});
+                     counter(run.counters, "neighbours"), stages_of(run.counters)});
   }
 }
 
 void RatioTable::print() const {
   print_ratios();
   print_stages();
+  print_laws();
+}
+
+/* What one visit of a particle costs by its law: the same machine configuration, everything yields. */
+void RatioTable::print_laws() const {
+  const std::string configuration = "/gauss-seidel/auto/threads:1";
+  constexpr long particles = 65536;
+  std::vector<std::pair<std::string, double>> visits; // nanoseconds
+  double elastic = 0, sand = 0;
+  for (const Row &row : rows_) {
+    const std::size_t at = row.configuration.find(configuration);
+    if (row.particles != particles || at == std::string::npos || row.solve_rate <= 0) continue;
+    const std::string material = row.configuration.substr(8, at - 8); // after "library/"
+    const double nanoseconds = 1e9 * row.neighbours / row.solve_rate;
+    visits.emplace_back(material, nanoseconds);
+    if (material == "rubber") elastic = nanoseconds;
+    if (material == "sand") sand = nanoseconds;
+  }
+  if (elastic <= 0 || sand <= 0) return;
+  std::printf(
+      "\nNanoseconds a particle and iteration by material, everything yielding but rubber; %ld particles, one thread.\n\n"
+      "| material | ns | over rubber (elastic) | over sand (Drucker-Prager) |\n|---|--:|--:|--:|\n",
+      particles);
+  for (const auto &[material, nanoseconds] : visits)
+    std::printf("| %s | %.1f | %.2f | %.2f |\n", material.c_str(), nanoseconds, nanoseconds / elastic, nanoseconds / sand);
 }
 
 void RatioTable::print_ratios() const {

@@ -20,11 +20,12 @@ private:
   struct Row {
     std::string configuration;
     long particles;
-    double solve_rate, step_rate, nanoseconds, bytes;
+    double solve_rate, step_rate, nanoseconds, bytes, neighbours;
     std::string stages; // "sort 28, ..." in nanoseconds a particle and substep
   };
   void print_ratios() const;
   void print_stages() const;
+  void print_laws() const;
   std::vector<Row> rows_;
 };
 
