@@ -87,7 +87,7 @@ TEST(CudaBackend, RefusalLeavesOtherWorldsAlone) {
 
 // Both solve the same sequence of constraints. What differs is how sums over neighbours are folded, and fused multiply-adds.
 TEST(CudaBackend, FirstSubstepHasTheCpusVelocities) {
-  for (const loam_material_def &material : {scenes::sand(), scenes::plasticine(), scenes::rubber()})
+  for (const loam_material_def &material : scenes::each_law())
     for (const std::uint32_t solver : {LOAM_SOLVER_GAUSS_SEIDEL, LOAM_SOLVER_JACOBI}) {
       const scenes::Scene scene = scenes::jittered_block(material, 5000, 5);
       loam_world_def def = definition(scene, LOAM_BACKEND_CUDA);

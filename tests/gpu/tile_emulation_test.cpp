@@ -31,7 +31,7 @@ TEST_P(EachLaw, AgreesWithTheCpuToRounding) {
     cpu.step(0.004f);
     emulated.step(0.004f);
     const auto expected = cpu.velocities();
-    EXPECT_LT(greatest_difference(expected, emulated.velocities()), 2e-5f * root_mean_square(expected)) << jacobi;
+    EXPECT_LT(greatest_difference(expected, emulated.velocities()), 5e-5f * root_mean_square(expected)) << jacobi;
     const loam_statistics a = cpu.backend().statistics(), b = emulated.backend().statistics();
     EXPECT_EQ(a.pairs, b.pairs);
     EXPECT_EQ(a.contacts, b.contacts);
@@ -40,8 +40,12 @@ TEST_P(EachLaw, AgreesWithTheCpuToRounding) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(TileEmulation, EachLaw,
-                         testing::Values(Law{scenes::sand()}, Law{scenes::plasticine()}, Law{scenes::rubber()}),
+std::vector<Law> each_law() {
+  std::vector<Law> laws;
+  for (const loam_material_def &material : scenes::each_law()) laws.push_back({material});
+  return laws;
+}
+INSTANTIATE_TEST_SUITE_P(TileEmulation, EachLaw, testing::ValuesIn(each_law()),
                          [](const auto &info) { return std::string(info.param.material.name); });
 
 // Impulses between free particles cancel: a lost or doubled write to a neighbour would show.

@@ -75,6 +75,9 @@ std::string outcome(loam_status status);
 /* The library's default world for a scene: its spacing as the kernel radius, room for its particles, the CPU, one thread. */
 loam_world_def world_def(const Scene &scene);
 
+/* One material of each law, and of each branch of a law, so weak that all but rubber yield everywhere in a jittered_block. */
+std::vector<loam_material_def> each_law();
+
 /* A copy of the particles in the order of their ids, x, y, z (and xx, yy, zz, xy, xz, yz of b - I) one after the other. */
 struct Snapshot {
   std::vector<float> positions, velocities, volumes, inverse_masses, strains;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace loam::scenes {
 
@@ -24,7 +25,34 @@ void rotation_from_up(const float normal[3], float rotation[4]) {
   rotation[3] = w / length;
 }
 
+loam_material_def of_law(std::uint32_t law, const char *name) {
+  loam_material_def def;
+  require(loam_material_def_default(law, &def, sizeof def), "loam_material_def_default");
+  std::memset(def.name, 0, sizeof def.name);
+  std::strncpy(def.name, name, sizeof def.name - 1);
+  def.density = 1500;
+  def.youngs_modulus = 1e6f;
+  def.poissons_ratio = 0.3f;
+  return def;
+}
+
 } // namespace
+
+std::vector<loam_material_def> each_law() {
+  loam_material_def metal = of_law(LOAM_LAW_VON_MISES, "metal"), clay = of_law(LOAM_LAW_NACC, "clay"),
+                    mud = of_law(LOAM_LAW_HERSCHEL_BULKLEY, "mud"), foam = of_law(LOAM_LAW_HERSCHEL_BULKLEY, "foam"),
+                    starch = of_law(LOAM_LAW_HERSCHEL_BULKLEY, "starch"), snow = of_law(LOAM_LAW_STOMAKHIN_SNOW, "snow");
+  metal.yield_stress = 500;
+  metal.hardening_modulus = 1e4f;
+  clay.consolidation = -2e-4f;
+  mud.shear_yield_stress = foam.shear_yield_stress = starch.shear_yield_stress = 100;
+  mud.flow_exponent = 1;
+  foam.flow_exponent = 0.3f;
+  starch.flow_exponent = 3;
+  snow.critical_compression = 2e-3f;
+  snow.critical_stretch = 1e-3f;
+  return {sand(), rubber(), plasticine(500), metal, clay, mud, foam, starch, snow};
+}
 
 std::string outcome(loam_status status) {
   if (status == LOAM_OK) return "LOAM_OK";
