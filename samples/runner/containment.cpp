@@ -12,10 +12,10 @@ namespace runner {
 Containment::Containment(const Scene &scene, const Particles &start) {
   const std::size_t ids = start.ids.empty() ? 0 : start.ids.back() + std::size_t(1);
   for (const SceneCollider &collider : scene.colliders) {
-    if (collider.kind != LOAM_COLLIDER_MESH) continue;
+    if (collider.kind != LOAM_COLLIDER_MESH || !collider.motions.empty()) continue;
     const Mesh &mesh = scene.meshes.at(collider.file);
     if (!is_closed(mesh)) continue;
-    Container container{InsideTest(mesh, collider.position, collider.rotation), std::vector<std::uint8_t>(ids)};
+    Container container{InsideTest(mesh, collider.pose.position, collider.pose.rotation), std::vector<std::uint8_t>(ids)};
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, start.count(), 256), [&](const auto &range) {
       for (std::size_t i = range.begin(); i < range.end(); ++i)
         container.held[start.ids[i]] = container.test.inside(to_double(start.positions[i]));

@@ -12,7 +12,7 @@ namespace runner {
 
 class Containment {
 public:
-  // `start` are the particles before the first step. A collider takes part if its mesh is closed and holds at least one of them.
+  // `start` are the particles before the first step. A collider takes part if it never moves, its mesh is closed, and it holds at least one of them.
   Containment(const Scene &scene, const Particles &start);
 
   // Particles that are now outside a collider that they started in.

@@ -13,6 +13,7 @@ struct Particles {
   std::vector<Vector3> positions;
   std::vector<Vector3> velocities;
   std::vector<std::uint32_t> materials; // index into the scene's materials
+  std::vector<std::uint32_t> emitters;  // index into the scene's emitters
   std::size_t count() const { return ids.size(); }
 };
 

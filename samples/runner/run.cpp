@@ -62,9 +62,10 @@ int run(const Options &options) {
   // Everything that can be wrong with the scene shows before anything is written.
   Simulation simulation(scene);
   std::optional<Renderer> renderer;
-  if (options.pictures && scene.camera) renderer.emplace(scene);
+  const Particles start = simulation.read_particles();
+  if (options.pictures && scene.camera) renderer.emplace(scene, start);
   const OutputFolder output(options.output);
-  const Containment containment(scene, simulation.read_particles());
+  const Containment containment(scene, start);
 
   RunStatistics statistics;
   statistics.particles = simulation.particle_count();
@@ -99,7 +100,7 @@ int run(const Options &options) {
       if (due(frame, options.ply_every))
         output.write(fmt::format("frame_{:04}.ply", frame), make_ply(particles, fmt::format("time {:.6f} s", record.time)));
       if (renderer && due(frame, options.picture_every))
-        output.write(fmt::format("frame_{:04}.png", frame), make_png(renderer->render(particles)));
+        output.write(fmt::format("frame_{:04}.png", frame), make_png(renderer->render(particles, record.time)));
 
       progress.show(frame, scene.watch ? fmt::format("{} left above", record.watched)
                                        : fmt::format("mean speed {:.3g} m/s", record.statistics.mean_speed));

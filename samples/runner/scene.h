@@ -12,6 +12,7 @@
 #include <loam/loam.h>
 
 #include "mesh.h"
+#include "motion.h"
 #include "vector.h"
 
 namespace runner {
@@ -22,12 +23,16 @@ struct Place {
   std::string key;
 };
 
+// How matter is shown: its particles one by one, or a surface around those of an emitter.
+enum class Look { grains, smooth, glossy };
+
 struct SceneMaterial {
   Place place;
   std::string name;
   loam_material_def def{};
   Vector3 colour = {0.76f, 0.62f, 0.42f}; // linear RGB
   float colour_variation = 0.15f;         // share by which grains differ
+  Look look = Look::grains;
 };
 
 struct SceneRegion {
@@ -45,17 +50,21 @@ struct SceneEmitter {
   std::string material;
   SceneRegion region, cut;
   loam_fill_def def{}; // without material, region and cut
+  Vector3 colour;      // the material's, unless the emitter has its own
+  // Grains change colour with their height at the start, every band_height, so that one sees where they went. 0: they do not.
+  Vector3 band_colour;
+  float band_height = 0;
 };
 
 // How a collider or decoration looks. It has no part in the simulation.
-enum class Appearance { hidden, glass, matte, wood, metal };
+enum class Appearance { hidden, glass, matte, wood, metal, glossy, tiles };
 
 struct SceneCollider {
   Place place;
   std::uint32_t kind = LOAM_COLLIDER_PLANE;
-  std::filesystem::path file; // MESH
-  Vector3 position;
-  std::array<float, 4> rotation = {0, 0, 0, 1};
+  std::filesystem::path file; // MESH: its key in Scene::meshes
+  Pose pose;                  // at the start
+  std::vector<Motion> motions;
   float friction = 0;
   Appearance appearance = Appearance::matte;
   Vector3 colour = {0.5f, 0.5f, 0.5f};

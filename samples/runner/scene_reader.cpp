@@ -26,17 +26,32 @@ const std::vector<std::pair<std::string_view, std::uint32_t>> regions = {{"box",
                                                                          {"sphere", LOAM_REGION_SPHERE},
                                                                          {"cylinder", LOAM_REGION_CYLINDER},
                                                                          {"mesh", LOAM_REGION_MESH}};
-const std::vector<std::pair<std::string_view, std::uint32_t>> collider_kinds = {{"plane", LOAM_COLLIDER_PLANE},
-                                                                                {"mesh", LOAM_COLLIDER_MESH}};
-const std::vector<std::pair<std::string_view, Appearance>> appearances = {{"hidden", Appearance::hidden},
-                                                                          {"glass", Appearance::glass},
-                                                                          {"matte", Appearance::matte},
-                                                                          {"wood", Appearance::wood},
-                                                                          {"metal", Appearance::metal}};
+enum class ColliderShape { plane, mesh, box };
+const std::vector<std::pair<std::string_view, ColliderShape>> collider_shapes = {
+    {"plane", ColliderShape::plane}, {"mesh", ColliderShape::mesh}, {"box", ColliderShape::box}};
+const std::vector<std::pair<std::string_view, Appearance>> appearances = {
+    {"hidden", Appearance::hidden}, {"glass", Appearance::glass}, {"matte", Appearance::matte},
+    {"wood", Appearance::wood},     {"metal", Appearance::metal}, {"glossy", Appearance::glossy}};
+
+const std::vector<std::pair<std::string_view, Appearance>> plane_appearances = {
+    {"hidden", Appearance::hidden}, {"matte", Appearance::matte}, {"wood", Appearance::wood}, {"tiles", Appearance::tiles}};
+const std::vector<std::pair<std::string_view, Look>> looks = {
+    {"grains", Look::grains}, {"smooth", Look::smooth}, {"glossy", Look::glossy}};
 
 // Defaults come from the library, and they cannot fail for the struct sizes of its own headers unless it is a different version.
 void expect_ok(loam_status status, const char *call) {
   if (status != LOAM_OK) throw Error(fmt::format("{}: {}: {}", call, loam_status_name(status), loam_last_error()));
+}
+
+// Twelve triangles, counter-clockwise seen from outside.
+Mesh make_box(Vector3 half_extents) {
+  Mesh mesh;
+  for (int corner = 0; corner < 8; ++corner)
+    mesh.vertices.push_back({corner & 1 ? half_extents.x : -half_extents.x, corner & 2 ? half_extents.y : -half_extents.y,
+                             corner & 4 ? half_extents.z : -half_extents.z});
+  mesh.indices = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
+                  2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
+  return mesh;
 }
 
 class Reader {
@@ -122,6 +137,7 @@ private:
     table.read("cohesion", def.cohesion);
     table.read("colour", material.colour);
     table.read("colour_variation", material.colour_variation);
+    table.read("look", material.look, looks);
     table.finish();
     scene_.materials.push_back(material);
   }
@@ -133,9 +149,19 @@ private:
     expect_ok(loam_fill_def_default(&def, sizeof def), "loam_fill_def_default");
     table.require("material");
     table.read("material", emitter.material);
-    const bool known = std::any_of(scene_.materials.begin(), scene_.materials.end(),
-                                   [&](const SceneMaterial &material) { return material.name == emitter.material; });
-    if (!known) table.fail("material", fmt::format("no material is named \"{}\"", emitter.material));
+    const auto material = std::find_if(scene_.materials.begin(), scene_.materials.end(),
+                                       [&](const SceneMaterial &each) { return each.name == emitter.material; });
+    if (material == scene_.materials.end())
+      table.fail("material", fmt::format("no material is named \"{}\"", emitter.material));
+    emitter.colour = material->colour;
+    table.read("colour", emitter.colour);
+    table.read("band_colour", emitter.band_colour);
+    table.read("band_height", emitter.band_height);
+    if (!(emitter.band_height >= 0)) table.fail("band_height", "must be 0 or more");
+    if (table.has("band_colour") != table.has("band_height"))
+      table.fail(table.has("band_colour") ? "band_colour" : "band_height", "band_colour and band_height belong together");
+    if (table.has("band_height") && material->look != Look::grains)
+      table.fail("band_height", "bands are for materials whose look is \"grains\"");
     table.require("region");
     emitter.region = read_region(*table.table("region"));
     if (std::optional<TomlTable> cut = table.table("cut")) emitter.cut = read_region(*cut);
@@ -181,15 +207,47 @@ private:
     expect_ok(loam_collider_def_default(&def, sizeof def), "loam_collider_def_default");
     collider.friction = def.friction;
     table.require("kind");
-    table.read("kind", collider.kind, collider_kinds);
-    if (collider.kind == LOAM_COLLIDER_MESH) collider.file = read_mesh(table);
-    table.read("position", collider.position);
-    collider.rotation = read_rotation(table);
+    ColliderShape shape = ColliderShape::plane;
+    table.read("kind", shape, collider_shapes);
+    collider.kind = shape == ColliderShape::plane ? LOAM_COLLIDER_PLANE : LOAM_COLLIDER_MESH;
+    if (shape == ColliderShape::mesh) collider.file = read_mesh(table);
+    if (shape == ColliderShape::box) {
+      Vector3 half_extents;
+      table.require("half_extents");
+      table.read("half_extents", half_extents);
+      for (int axis = 0; axis < 3; ++axis)
+        if (!(half_extents[axis] > 0)) table.fail("half_extents", "must be over 0");
+      collider.file = fmt::format("the box of {}", collider.place.key);
+      scene_.meshes.emplace(collider.file, make_box(half_extents));
+    }
+    table.read("position", collider.pose.position);
+    collider.pose.rotation = read_rotation(table);
+    for (TomlTable &motion : table.tables("motions")) collider.motions.push_back(read_motion(motion));
     table.read("friction", collider.friction);
-    table.read("appearance", collider.appearance, appearances);
+    if (shape == ColliderShape::plane && !collider.motions.empty()) table.fail("motions", "a plane stays where it is");
+    table.read("appearance", collider.appearance, shape == ColliderShape::plane ? plane_appearances : appearances);
+    if (collider.appearance == Appearance::glass && !collider.motions.empty())
+      table.fail("appearance", "what moves cannot be shown as glass");
     table.read("colour", collider.colour);
     table.finish();
     scene_.colliders.push_back(collider);
+  }
+
+  Motion read_motion(TomlTable &table) {
+    Motion motion;
+    double degrees_per_second = 0;
+    table.read("start", motion.start);
+    table.read("stop", motion.stop);
+    table.read("velocity", motion.velocity);
+    table.read("spin_axis", motion.spin_axis);
+    table.read("spin_degrees_per_second", degrees_per_second);
+    if (!(motion.start >= 0)) table.fail("start", "must be 0 or more");
+    if (!(motion.stop > motion.start)) table.fail("stop", "must be later than start");
+    if (!(length(motion.spin_axis) > 0)) table.fail("spin_axis", "must not be zero");
+    motion.spin_axis = normalized(motion.spin_axis);
+    motion.spin = degrees_per_second * std::numbers::pi / 180;
+    table.finish();
+    return motion;
   }
 
   void read_decoration(TomlTable &table) {

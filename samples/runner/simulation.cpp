@@ -74,6 +74,8 @@ void Simulation::check(loam_status status, const Place &place) const {
 bool Simulation::build(std::uint64_t particle_capacity) {
   world_.reset();
   material_ids_.clear();
+  collider_ids_.clear();
+  emitter_ends_.clear();
   particle_count_ = 0;
 
   loam_world_def world_def = scene_->world;
@@ -94,12 +96,13 @@ bool Simulation::build(std::uint64_t particle_capacity) {
     loam_collider_def def{};
     check(loam_collider_def_default(&def, sizeof def), collider.place);
     def.kind = collider.kind;
-    for (int axis = 0; axis < 3; ++axis) def.position[axis] = collider.position[axis];
-    std::copy(collider.rotation.begin(), collider.rotation.end(), def.rotation);
+    for (int axis = 0; axis < 3; ++axis) def.position[axis] = collider.pose.position[axis];
+    std::copy(collider.pose.rotation.begin(), collider.pose.rotation.end(), def.rotation);
     def.friction = collider.friction;
     if (collider.kind == LOAM_COLLIDER_MESH) def.mesh = describe(scene_->meshes.at(collider.file));
     loam_collider_id id = 0;
     check(loam_collider_create(world, &def, &id), collider.place);
+    collider_ids_.push_back(id);
   }
 
   for (const SceneEmitter &emitter : scene_->emitters) {
@@ -114,11 +117,22 @@ bool Simulation::build(std::uint64_t particle_capacity) {
     if (status == LOAM_ERROR_CAPACITY) return false;
     check(status, emitter.place);
     particle_count_ += count;
+    emitter_ends_.push_back(particle_count_);
   }
   return true;
 }
 
-void Simulation::step() { check(loam_world_step(world_.get(), static_cast<float>(1.0 / scene_->frame_rate)), {}); }
+void Simulation::step() {
+  const double end = static_cast<double>(frame_ + 1) / scene_->frame_rate;
+  for (std::size_t i = 0; i < scene_->colliders.size(); ++i) {
+    const SceneCollider &collider = scene_->colliders[i];
+    if (collider.motions.empty()) continue;
+    const Pose pose = pose_at(collider.pose, collider.motions, end);
+    check(loam_collider_move(world_.get(), collider_ids_[i], &pose.position.x, pose.rotation.data()), collider.place);
+  }
+  check(loam_world_step(world_.get(), static_cast<float>(1.0 / scene_->frame_rate)), {});
+  ++frame_;
+}
 
 Particles Simulation::read_particles() const {
   loam_particle_view view{};
@@ -142,12 +156,15 @@ Particles Simulation::read_particles() const {
   result.positions.reserve(count);
   result.velocities.reserve(count);
   result.materials.reserve(count);
+  result.emitters.reserve(count);
   for (const std::size_t i : order) {
     result.ids.push_back(ids[i]);
     result.positions.push_back({positions[4 * i], positions[4 * i + 1], positions[4 * i + 2]});
     result.velocities.push_back({velocities[4 * i], velocities[4 * i + 1], velocities[4 * i + 2]});
     const auto material = std::find(material_ids_.begin(), material_ids_.end(), materials[i]);
     result.materials.push_back(static_cast<std::uint32_t>(material - material_ids_.begin()));
+    const auto emitter = std::upper_bound(emitter_ends_.begin(), emitter_ends_.end(), std::uint64_t(ids[i]));
+    result.emitters.push_back(static_cast<std::uint32_t>(emitter - emitter_ends_.begin()));
   }
   return result;
 }

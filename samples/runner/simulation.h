@@ -42,6 +42,9 @@ private:
   const Scene *scene_;
   std::unique_ptr<loam_world, Destroy> world_;
   std::vector<std::uint32_t> material_ids_; // the lower 32 bits, by index in the scene
+  std::vector<loam_collider_id> collider_ids_;
+  std::vector<std::uint64_t> emitter_ends_; // of each emitter the id after its last particle's
+  std::uint64_t frame_ = 0;
   std::uint64_t particle_count_ = 0;
 };
 

@@ -145,7 +145,7 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) {
     const toml::table *table = array->get(i)->as_table();
     if (table == nullptr)
       fail(key, fmt::format("expected tables ([[{}]]), found a value of type {}", key, type_name(*array->get(i))));
-    result.emplace_back(*table, *file_, fmt::format("{}[{}]", key, i));
+    result.emplace_back(*table, *file_, fmt::format("{}{}{}[{}]", name_, name_.empty() ? "" : ".", key, i));
   }
   return result;
 }

@@ -1,5 +1,6 @@
 // Scene files: what is read, and errors that name file, line and key.
 #include <cmath>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -63,7 +64,7 @@ TEST(RunnerSceneReader, ReadsTheHourglass) {
 TEST(RunnerSceneReader, NamesAnUnknownKeyAndItsLine) {
   expect_mentions(scene_error(replaced(minimal, "kernel_radius", "kernel_radios")),
                   {"scene.toml:2:", "world.kernel_radios", "unknown key"});
-  expect_mentions(scene_error(minimal + "colour = 3\n"), {"scene.toml:12:", "emitters[0].colour", "unknown key"});
+  expect_mentions(scene_error(minimal + "color = 3\n"), {"scene.toml:12:", "emitters[0].color", "unknown key"});
   expect_mentions(scene_error(replaced(minimal, "radius = 0.1", "radius = 0.1, rotatoin_degrees = 3")),
                   {"scene.toml:11:", "emitters[0].region.rotatoin_degrees"});
   expect_mentions(scene_error("colour = 1\n" + minimal), {"scene.toml:1:", "colour"});
@@ -110,6 +111,74 @@ TEST(RunnerSceneReader, ScalesTheNumberOfParticles) {
   EXPECT_EQ(scene.world.substeps, 20u);
   EXPECT_FLOAT_EQ(scene.emitters[0].def.inset, 0.005f);
   EXPECT_FLOAT_EQ(scene.emitters[0].region.radius, 0.1f) << "the scene keeps its size";
+}
+
+const std::string press = minimal +
+                          "[[colliders]]\n"                                                                     // line 12
+                          "kind = \"box\"\n"                                                                    // line 13
+                          "half_extents = [0.1, 0.2, 0.3]\n"                                                    // line 14
+                          "position = [0, 1, 0]\n"                                                              // line 15
+                          "motions = [{ start = 1, stop = 3, velocity = [0, -2, 0] },\n"                        // line 16
+                          "           { stop = 0.5, spin_axis = [0, 0, 2], spin_degrees_per_second = 180 }]\n"; // line 17
+
+TEST(RunnerSceneReader, ReadsABoxAndItsMotions) {
+  const TemporaryFolder folder;
+  const runner::Scene scene = runner::read_scene(folder.write("scene.toml", press));
+  ASSERT_EQ(scene.colliders.size(), 1u);
+  const runner::SceneCollider &box = scene.colliders[0];
+  EXPECT_EQ(box.kind, static_cast<uint32_t>(LOAM_COLLIDER_MESH));
+  EXPECT_EQ(scene.meshes.at(box.file).triangle_count(), 12u);
+  ASSERT_EQ(box.motions.size(), 2u);
+  const runner::Pose pose = runner::pose_at(box.pose, box.motions, 2);
+  EXPECT_FLOAT_EQ(pose.position.y, -1) << "two metres a second from 1 s to 2 s";
+  EXPECT_NEAR(pose.rotation[2], std::sin(std::numbers::pi / 4), 1e-6)
+      << "half a second of half a turn a second: a quarter turn";
+  EXPECT_NEAR(pose.rotation[3], std::cos(std::numbers::pi / 4), 1e-6);
+}
+
+TEST(RunnerSceneReader, RefusesMotionsAndBoxesThatCannotBe) {
+  expect_mentions(scene_error(replaced(press, "stop = 3", "stop = 1")),
+                  {"scene.toml:16:", "colliders[0].motions[0].stop", "later than start"});
+  expect_mentions(scene_error(replaced(press, "start = 1", "start = -1")),
+                  {"scene.toml:16:", "motions[0].start", "0 or more"});
+  expect_mentions(scene_error(replaced(press, "[0, 0, 2]", "[0, 0, 0]")), {"scene.toml:17:", "motions[1].spin_axis"});
+  expect_mentions(scene_error(replaced(press, "velocity", "velocty")),
+                  {"scene.toml:16:", "colliders[0].motions[0].velocty", "unknown key"});
+  expect_mentions(scene_error(replaced(press, "[0.1, 0.2, 0.3]", "[0.1, 0, 0.3]")), {"scene.toml:14:", "half_extents"});
+  expect_mentions(scene_error(replaced(press, "half_extents = [0.1, 0.2, 0.3]\n", "")), {"scene.toml:12:", "half_extents"});
+  expect_mentions(scene_error(press + "appearance = \"glass\"\n"), {"scene.toml:18:", "appearance", "glass"});
+  expect_mentions(scene_error(minimal + "[[colliders]]\nkind = \"plane\"\nmotions = [{ velocity = [0, 1, 0] }]\n"),
+                  {"scene.toml:14:", "motions", "plane"});
+  expect_mentions(scene_error(minimal + "[[colliders]]\nkind = \"plane\"\nappearance = \"glass\"\n"),
+                  {"scene.toml:14:", "\"glass\"", "\"tiles\""});
+}
+
+TEST(RunnerSceneReader, AnEmitterHasTheColourOfItsMaterialUnlessItHasItsOwn) {
+  const TemporaryFolder folder;
+  const std::string coloured =
+      replaced(minimal, "name = \"sand\"", "name = \"sand\"\nlook = \"glossy\"\ncolour = [0.1, 0.2, 0.3]");
+  const runner::Scene scene = runner::read_scene(folder.write(
+      "scene.toml", coloured + "[[emitters]]\nmaterial = \"sand\"\nregion = { kind = \"sphere\", radius = 0.1 }\n"
+                               "colour = [0.5, 0.6, 0.7]\n"));
+  EXPECT_EQ(scene.materials[0].look, runner::Look::glossy);
+  EXPECT_FLOAT_EQ(scene.emitters[0].colour.y, 0.2f);
+  EXPECT_FLOAT_EQ(scene.emitters[1].colour.y, 0.6f);
+  expect_mentions(scene_error(coloured + "band_colour = [1, 1, 1]\nband_height = 0.05\n"), {"scene.toml:15:", "\"grains\""});
+  expect_mentions(scene_error(minimal + "band_height = 0.1\n"), {"scene.toml:12:", "band_height", "band_colour"});
+  expect_mentions(scene_error(minimal + "band_colour = [1, 1, 1]\nband_height = -1\n"), {"scene.toml:13:", "band_height"});
+}
+
+// Every scene that the project ships can be read, with all the meshes it names.
+TEST(RunnerSceneReader, ReadsEveryScene) {
+  int scenes = 0;
+  for (const auto &entry : std::filesystem::directory_iterator(std::string(LOAM_SOURCE_DIR) + "/samples/scenes")) {
+    if (!entry.is_directory()) continue;
+    const std::filesystem::path file = entry.path() / "scene.toml";
+    if (!std::filesystem::exists(file)) continue;
+    ++scenes;
+    EXPECT_EQ(error_text([&] { EXPECT_TRUE(runner::read_scene(file).camera.has_value()); }), "") << file;
+  }
+  EXPECT_GE(scenes, 1);
 }
 
 } // namespace

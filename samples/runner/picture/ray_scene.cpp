@@ -12,10 +12,36 @@
 namespace runner {
 namespace {
 
-Vector3 rotate(const std::array<float, 4> &rotation, Vector3 v) {
-  const Vector3 axis = {rotation[0], rotation[1], rotation[2]};
-  const Vector3 t = 2.0f * cross(axis, v);
-  return v + rotation[3] * t + cross(axis, t);
+constexpr std::uint32_t spheres_id = 0x00ffffffu; // far above the solids', which are their indices
+
+// Triangles that meet at less than about 40 degrees are shown as one smooth surface.
+constexpr float crease_cosine = 0.77f;
+
+// For each corner of each triangle, the normal of the smooth surface around it.
+std::vector<Vector3> corner_normals(const Mesh &mesh) {
+  const std::size_t triangles = mesh.triangle_count();
+  std::vector<Vector3> areas(triangles);
+  std::vector<std::uint32_t> first(mesh.vertices.size() + 1), around(mesh.indices.size());
+  for (const std::uint32_t vertex : mesh.indices) ++first[vertex + 1];
+  for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+  for (std::size_t t = 0; t < triangles; ++t) {
+    const Vector3 a = mesh.vertices[mesh.indices[3 * t]], b = mesh.vertices[mesh.indices[3 * t + 1]],
+                  c = mesh.vertices[mesh.indices[3 * t + 2]];
+    areas[t] = cross(b - a, c - a);
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      around[next[mesh.indices[3 * t + corner]]++] = static_cast<std::uint32_t>(t);
+  }
+  std::vector<Vector3> normals(mesh.indices.size());
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const Vector3 own = areas[i / 3];
+    const std::uint32_t vertex = mesh.indices[i];
+    for (std::uint32_t k = first[vertex]; k < first[vertex + 1]; ++k) {
+      const Vector3 other = areas[around[k]];
+      if (dot(own, other) >= crease_cosine * length(own) * length(other)) normals[i] += other;
+    }
+  }
+  return normals;
 }
 
 RTCRay to_embree(const Ray &ray, float from, float to) {
@@ -57,24 +83,30 @@ RayScene::RayScene(const Scene &scene) {
     if (decoration.appearance == Appearance::hidden) continue;
     const Mesh mesh = make_rounded_cylinder(decoration.radius, decoration.half_height, decoration.rounding);
     const bool glass = decoration.appearance == Appearance::glass;
+    const std::uint32_t id = glass ? panes_++ : static_cast<std::uint32_t>(solids_.size());
     if (!glass) solids_.push_back({decoration.appearance, decoration.colour, decoration.center});
-    has_glass_ |= glass;
-    add_mesh(glass ? glass_ : opaque_, mesh, decoration.center, {0, 0, 0, 1});
+    add_mesh(glass ? glass_ : opaque_, id, mesh, {decoration.center, {0, 0, 0, 1}}, true);
   }
   for (const SceneCollider &collider : scene.colliders) {
     if (collider.appearance == Appearance::hidden) continue;
     if (collider.kind == LOAM_COLLIDER_PLANE) {
       // One plane is the ground; more would wall the camera in.
-      if (!ground_) ground_ = Ground{collider.position, rotate(collider.rotation, {0, 1, 0}), collider.colour};
+      if (!ground_)
+        ground_ =
+            Ground{collider.pose.position, rotate(collider.pose.rotation, {0, 1, 0}), collider.colour, collider.appearance};
       continue;
     }
+    const Mesh &mesh = scene.meshes.at(collider.file);
     const bool glass = collider.appearance == Appearance::glass;
-    if (!glass) solids_.push_back({collider.appearance, collider.colour, collider.position});
-    has_glass_ |= glass;
-    add_mesh(glass ? glass_ : opaque_, scene.meshes.at(collider.file), collider.position, collider.rotation);
+    const std::uint32_t id = glass ? panes_++ : static_cast<std::uint32_t>(solids_.size());
+    if (!glass) solids_.push_back({collider.appearance, collider.colour, collider.pose.position});
+    if (!glass && !collider.motions.empty())
+      moving_.push_back({id, &collider, &mesh});
+    else
+      add_mesh(glass ? glass_ : opaque_, id, mesh, collider.pose, true);
   }
+  has_glass_ = panes_ != 0;
   rtcCommitScene(glass_);
-
   rtcCommitScene(opaque_);
   if (!solids_.empty() || has_glass_) lift_ = 2e-5f * length(high_ - low_);
 }
@@ -86,9 +118,10 @@ RayScene::~RayScene() {
   if (device_ != nullptr) rtcReleaseDevice(device_);
 }
 
-void RayScene::add_mesh(RTCSceneTy *to, const Mesh &mesh, Vector3 position, const std::array<float, 4> &rotation) {
+void RayScene::add_mesh(RTCSceneTy *to, std::uint32_t id, const Mesh &mesh, const Pose &pose, bool bounding) {
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-  const std::size_t count = mesh.vertices.size();
+  // Every triangle has corners of its own, so that edges can be sharp.
+  const std::size_t count = mesh.indices.size();
   auto *vertices = static_cast<Vector3 *>(
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vector3), count));
   auto *indices = static_cast<std::uint32_t *>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
@@ -97,25 +130,41 @@ void RayScene::add_mesh(RTCSceneTy *to, const Mesh &mesh, Vector3 position, cons
   auto *normals = static_cast<Vector3 *>(
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX_ATTRIBUTE, 0, RTC_FORMAT_FLOAT3, sizeof(Vector3), count));
   if (vertices == nullptr || indices == nullptr || normals == nullptr) throw Error("out of memory for the picture's meshes");
+  const std::vector<Vector3> mesh_normals = corner_normals(mesh);
   for (std::size_t i = 0; i < count; ++i) {
-    vertices[i] = rotate(rotation, mesh.vertices[i]) + position;
-    normals[i] = {};
+    vertices[i] = rotate(pose.rotation, mesh.vertices[mesh.indices[i]]) + pose.position;
+    normals[i] = rotate(pose.rotation, mesh_normals[i]);
+    indices[i] = static_cast<std::uint32_t>(i);
+    if (!bounding) continue;
     low_ = minimum(low_, vertices[i]);
     high_ = maximum(high_, vertices[i]);
   }
-  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
-    std::uint32_t corner[3];
-    for (std::size_t c = 0; c < 3; ++c) indices[i + c] = corner[c] = mesh.indices[i + c];
-    const Vector3 area = cross(vertices[corner[1]] - vertices[corner[0]], vertices[corner[2]] - vertices[corner[0]]);
-    for (const std::uint32_t vertex : corner) normals[vertex] += area;
-  }
   rtcCommitGeometry(geometry);
-  rtcAttachGeometry(to, geometry);
+  rtcAttachGeometryByID(to, geometry, id);
   rtcReleaseGeometry(geometry);
 }
 
-void RayScene::set_particles(std::vector<float> spheres) {
+void RayScene::replace_mesh(std::uint32_t id, const Mesh &mesh, const Pose &pose) {
+  replaced_.resize(solids_.size());
+  if (replaced_[id]) rtcDetachGeometry(opaque_, id);
+  replaced_[id] = !mesh.indices.empty();
+  if (replaced_[id]) add_mesh(opaque_, id, mesh, pose, !bounds_known_);
+}
+
+std::uint32_t RayScene::add_surface(Appearance appearance, Vector3 colour) {
+  solids_.push_back({appearance, colour, {}});
+  return static_cast<std::uint32_t>(solids_.size() - 1);
+}
+
+void RayScene::set_surface(std::uint32_t solid, const Mesh &mesh) { replace_mesh(solid, mesh, {}); }
+
+void RayScene::set_frame(std::vector<float> spheres, double time) {
   spheres_ = std::move(spheres);
+  for (const Moving &each : moving_) {
+    const Pose pose = pose_at(each.collider->pose, each.collider->motions, time);
+    solids_[each.solid].origin = pose.position;
+    replace_mesh(each.solid, *each.mesh, pose);
+  }
   if (!bounds_known_) { // once: the ground's light is laid out over these bounds, and must not wander from frame to frame
     for (std::size_t i = 0; i + 3 < spheres_.size(); i += 4) {
       const Vector3 center = {spheres_[i], spheres_[i + 1], spheres_[i + 2]};
@@ -126,13 +175,15 @@ void RayScene::set_particles(std::vector<float> spheres) {
     lift_ = 2e-5f * length(high_ - low_);
     bounds_known_ = true;
   }
-  if (spheres_geometry_ == nullptr) {
-    spheres_geometry_ = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_SPHERE_POINT);
-    spheres_id_ = rtcAttachGeometry(opaque_, spheres_geometry_);
+  if (!spheres_.empty()) {
+    if (spheres_geometry_ == nullptr) {
+      spheres_geometry_ = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+      rtcAttachGeometryByID(opaque_, spheres_geometry_, spheres_id);
+    }
+    rtcSetSharedGeometryBuffer(spheres_geometry_, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, spheres_.data(), 0,
+                               4 * sizeof(float), spheres_.size() / 4);
+    rtcCommitGeometry(spheres_geometry_);
   }
-  rtcSetSharedGeometryBuffer(spheres_geometry_, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, spheres_.data(), 0,
-                             4 * sizeof(float), spheres_.size() / 4);
-  rtcCommitGeometry(spheres_geometry_);
   rtcCommitScene(opaque_);
 }
 
@@ -152,7 +203,7 @@ Hit RayScene::closest(const Ray &ray) const {
   if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
   hit.distance = found.ray.tfar;
   hit.position = ray.at(hit.distance);
-  if (found.hit.geomID == spheres_id_) {
+  if (found.hit.geomID == spheres_id) {
     hit.kind = Hit::particle;
     hit.index = found.hit.primID;
     const float *sphere = &spheres_[4 * static_cast<std::size_t>(hit.index)];

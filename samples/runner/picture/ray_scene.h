@@ -36,6 +36,7 @@ struct Solid {
 
 struct Ground {
   Vector3 point, normal, colour;
+  Appearance appearance = Appearance::matte;
 };
 
 class RayScene {
@@ -45,8 +46,12 @@ public:
   RayScene(const RayScene &) = delete;
   RayScene &operator=(const RayScene &) = delete;
 
-  // Replaces the particles: four floats each, x, y, z and the radius.
-  void set_particles(std::vector<float> spheres);
+  // Replaces the particles that are shown one by one, four floats each: x, y, z and the radius. Solids that move are absent until this
+  // is called for the first time, and then stand where they are at `time`.
+  void set_frame(std::vector<float> spheres, double time);
+  // Adds a solid whose shape is given anew for each frame, before set_frame. Returns its index.
+  std::uint32_t add_surface(Appearance appearance, Vector3 colour);
+  void set_surface(std::uint32_t solid, const Mesh &mesh);
 
   Hit closest(const Ray &ray) const;
   bool occluded(const Ray &ray) const;
@@ -63,18 +68,27 @@ public:
   float lift() const { return lift_; }
 
 private:
-  void add_mesh(RTCSceneTy *to, const Mesh &mesh, Vector3 position, const std::array<float, 4> &rotation);
+  struct Moving {
+    std::uint32_t solid;
+    const SceneCollider *collider;
+    const Mesh *mesh;
+  };
+
+  void add_mesh(RTCSceneTy *to, std::uint32_t id, const Mesh &mesh, const Pose &pose, bool bounding);
+  void replace_mesh(std::uint32_t id, const Mesh &mesh, const Pose &pose);
 
   RTCDeviceTy *device_ = nullptr;
   RTCSceneTy *opaque_ = nullptr;
   RTCSceneTy *glass_ = nullptr;
   RTCGeometryTy *spheres_geometry_ = nullptr;
-  std::uint32_t spheres_id_ = 0xffffffffu; // until there are particles: no geometry's id
   std::vector<float> spheres_;
   std::vector<Solid> solids_; // by Embree geometry id
+  std::vector<Moving> moving_;
+  std::vector<bool> replaced_; // of each solid: does it stand in the scene with the mesh of an earlier frame?
   std::optional<Ground> ground_;
   bool has_glass_ = false;
   bool bounds_known_ = false;
+  std::uint32_t panes_ = 0;
   Vector3 low_ = {1e30f, 1e30f, 1e30f}, high_ = {-1e30f, -1e30f, -1e30f};
   float lift_ = 1e-5f;
 };

@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 
 #include "picture/sampling.h"
+#include "picture/surface.h"
 #include "picture/surface_colour.h"
 #include "picture/tone_curve.h"
 
@@ -23,12 +24,28 @@ Vector3 up_of(const Scene &scene) {
 
 } // namespace
 
-Renderer::Renderer(const Scene &scene)
+Renderer::Renderer(const Scene &scene, const Particles &start)
     : scene_(&scene), camera_(*scene.camera), environment_(scene.light, up_of(scene)), rays_(scene),
-      still_(rays_, environment_, camera_) {}
+      still_(rays_, environment_, camera_) {
+  for (const SceneEmitter &emitter : scene.emitters) {
+    const Look look = std::find_if(scene.materials.begin(), scene.materials.end(), [&](const SceneMaterial &material) {
+                        return material.name == emitter.material;
+                      })->look;
+    surfaces_.push_back(
+        look == Look::grains
+            ? none
+            : rays_.add_surface(look == Look::glossy ? Appearance::glossy : Appearance::matte, emitter.colour));
+  }
+  in_band_.resize(start.ids.empty() ? 0 : start.ids.back() + std::size_t(1));
+  for (std::size_t i = 0; i < start.count(); ++i) {
+    const float height = scene.emitters[start.emitters[i]].band_height;
+    if (height > 0)
+      in_band_[start.ids[i]] = static_cast<int>(std::floor(dot(start.positions[i], environment_.up()) / height)) & 1;
+  }
+}
 
-Image Renderer::render(const Particles &particles) {
-  place_particles(particles);
+Image Renderer::render(const Particles &particles, double time) {
+  place_particles(particles, time);
   if (rays_.ground()) ground_light_.emplace(rays_, environment_);
 
   const int width = camera_.width(), height = camera_.height();
@@ -73,26 +90,31 @@ Image Renderer::render(const Particles &particles) {
   return image;
 }
 
-void Renderer::place_particles(const Particles &particles) {
-  const std::size_t count = particles.count();
-  std::vector<float> spheres(4 * count);
-  radii_.resize(count);
-  colours_.resize(count);
+void Renderer::place_particles(const Particles &particles, double time) {
+  std::vector<float> spheres;
+  std::vector<std::vector<Vector3>> bodies(surfaces_.size());
+  radii_.clear();
+  colours_.clear();
   const float radius = 0.47f * scene_->world.kernel_radius;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t id = particles.ids[i];
+  for (std::size_t i = 0; i < particles.count(); ++i) {
     const Vector3 x = particles.positions[i];
-    radii_[i] = radius * (0.88f + 0.2f * hash_unit(id + 0x9e3779b9u));
-    spheres[4 * i] = x.x;
-    spheres[4 * i + 1] = x.y;
-    spheres[4 * i + 2] = x.z;
-    spheres[4 * i + 3] = radii_[i];
-    const std::size_t material = std::min<std::size_t>(particles.materials[i], scene_->materials.size() - 1);
-    colours_[i] = grain_colour(scene_->materials[material].colour, scene_->materials[material].colour_variation, id);
+    const std::uint32_t emitter = particles.emitters[i];
+    if (surfaces_[emitter] != none) {
+      bodies[emitter].push_back(x);
+      continue;
+    }
+    const std::uint32_t id = particles.ids[i];
+    radii_.push_back(radius * (0.88f + 0.2f * hash_unit(id + 0x9e3779b9u)));
+    spheres.insert(spheres.end(), {x.x, x.y, x.z, radii_.back()});
+    const float variation = scene_->materials[particles.materials[i]].colour_variation;
+    const SceneEmitter &from = scene_->emitters[emitter];
+    colours_.push_back(grain_colour(in_band_[id] ? from.band_colour : from.colour, variation, id));
   }
-  rays_.set_particles(std::move(spheres));
-  grain_lights_.resize(count);
-  grain_light_states_ = std::vector<std::atomic<std::uint8_t>>(count);
+  for (std::size_t i = 0; i < surfaces_.size(); ++i)
+    if (surfaces_[i] != none) rays_.set_surface(surfaces_[i], make_surface(bodies[i], scene_->world.kernel_radius));
+  rays_.set_frame(std::move(spheres), time);
+  grain_lights_.resize(radii_.size());
+  grain_light_states_ = std::vector<std::atomic<std::uint8_t>>(radii_.size());
 }
 
 bool Renderer::differ(const Sample &a, const Sample &b) {
@@ -144,10 +166,16 @@ Vector3 Renderer::shade(const Ray &ray, const Hit &hit, std::size_t pixel, float
 }
 
 Vector3 Renderer::shade_ground(const Hit &hit, Vector3 background) const {
-  const Vector3 lit = (1 / pi) * (rays_.ground()->colour * ground_light_->irradiance(hit.position));
+  const Ground &ground = *rays_.ground();
+  const float size = length(rays_.high() - rays_.low());
+  Vector3 colour = ground.colour;
+  if (ground.appearance == Appearance::wood)
+    colour = plank_colour(ground.colour, hit.position - ground.point, Frame(ground.normal), 0.09f * size);
+  if (ground.appearance == Appearance::tiles)
+    colour = tile_colour(ground.colour, hit.position - ground.point, Frame(ground.normal), 0.16f * size);
+  const Vector3 lit = (1 / pi) * (colour * ground_light_->irradiance(hit.position));
   // The ground runs into the backdrop without a horizon.
-  const float reach = length(rays_.high() - rays_.low());
-  const float away = std::fmax(0.0f, length(hit.position - camera_.target()) / reach - 0.5f);
+  const float away = std::fmax(0.0f, length(hit.position - camera_.target()) / size - 0.5f);
   return mix(background, lit, std::exp(-1.3f * away * away));
 }
 
@@ -199,7 +227,8 @@ Vector3 Renderer::colour_of(const Hit &hit) const {
 Vector3 Renderer::shade_solid(const Ray &ray, const Hit &hit, std::size_t pixel, float noise) const {
   const Solid &solid = rays_.solids()[hit.index];
   const SkyLight *known = still_.sky_light(pixel, hit);
-  const SkyLight sky = known != nullptr ? *known : gather_sky_light(rays_, environment_, hit.position, hit.normal, 8, noise);
+  const SkyLight sky =
+      known != nullptr ? *known : gather_sky_light(rays_, environment_, hit.position, hit.normal, 24, noise);
   const Vector3 mirrored = reflect(ray.direction, hit.normal);
   Vector3 arriving = sky.irradiance;
   if (solid.appearance == Appearance::metal) {
@@ -211,14 +240,18 @@ Vector3 Renderer::shade_solid(const Ray &ray, const Hit &hit, std::size_t pixel,
   }
   arriving += direct(environment_.key(), hit, -ray.direction, noise, 3, 0.15f);
   arriving += direct(environment_.rim(), hit, -ray.direction, noise, 1, 0.15f);
-  if (solid.appearance != Appearance::wood) return (1 / pi) * (solid.colour * arriving);
-
-  const float ring = 0.012f * length(rays_.high() - rays_.low());
-  const Vector3 colour = wood_colour(solid.colour, hit.position - solid.origin, ring);
-  // A thin coat of varnish.
+  Vector3 colour = solid.colour;
+  float coat = 0;
+  if (solid.appearance == Appearance::wood) {
+    colour = wood_colour(solid.colour, hit.position - solid.origin, 0.012f * length(rays_.high() - rays_.low()));
+    coat = 0.35f; // a thin coat of varnish
+  }
+  if (solid.appearance == Appearance::glossy) coat = 1;
+  const Vector3 matte = (1 / pi) * (colour * arriving);
+  if (coat == 0) return matte;
   const float away = 1 + dot(ray.direction, hit.normal);
-  const float sheen = 0.35f * (0.04f + 0.5f * away * away * away * away * away) * sky.open;
-  return (1 / pi) * (colour * arriving) + sheen * environment_.mirrored(mirrored);
+  const float sheen = coat * (0.04f + 0.5f * away * away * away * away * away) * sky.open;
+  return matte + sheen * environment_.mirrored(mirrored);
 }
 
 } // namespace runner

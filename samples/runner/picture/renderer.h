@@ -20,9 +20,11 @@ namespace runner {
 class Renderer {
 public:
   // The scene must have a camera, and must outlive the renderer.
-  explicit Renderer(const Scene &scene);
+  // `start` are the particles before the first step.
+  Renderer(const Scene &scene, const Particles &start);
 
-  Image render(const Particles &particles);
+  // `time` in seconds says where moving colliders are.
+  Image render(const Particles &particles, double time);
 
 private:
   struct Sample {
@@ -34,7 +36,7 @@ private:
     Vector3 normal;
   };
 
-  void place_particles(const Particles &particles);
+  void place_particles(const Particles &particles, double time);
   // A ray through the picture at x, y, which lies in the pixel.
   Sample sample(float x, float y, std::size_t pixel, float noise);
   static bool differ(const Sample &a, const Sample &b);
@@ -46,13 +48,17 @@ private:
   Vector3 colour_of(const Hit &hit) const; // of a solid or a particle
   GrainLight grain_light(std::uint32_t index);
 
+  static constexpr std::uint32_t none = 0xffffffffu;
+
   const Scene *scene_;
   Camera camera_;
   Environment environment_;
   RayScene rays_;
   StillLayer still_;
   std::optional<GroundLight> ground_light_;
-  std::vector<float> radii_;
+  std::vector<std::uint32_t> surfaces_; // of each emitter the solid that stands for its particles, or `none`
+  std::vector<std::uint8_t> in_band_;   // by particle id: has it the emitter's band colour?
+  std::vector<float> radii_;            // of the particles that are shown one by one, as all that follows
   std::vector<Vector3> colours_;
   // Light of the particles that the camera has met so far: threads may gather the same one twice, with the same result.
   enum LightState : std::uint8_t { unknown, being_stored, stored };

@@ -52,4 +52,22 @@ Vector3 wood_colour(Vector3 colour, Vector3 point, float size) {
   return (1.06f - 0.30f * late + 0.10f * pores) * colour;
 }
 
+Vector3 plank_colour(Vector3 colour, Vector3 point, const Frame &across, float width) {
+  const float along = dot(point, across.tangent), aside = dot(point, across.bitangent) / width;
+  const float board = std::floor(aside), place = aside - board;
+  const auto id = static_cast<std::uint32_t>(static_cast<int>(board) + 4096);
+  const float tone = 0.88f + 0.24f * hash_unit(id);
+  const float gap = std::fmin(place, 1 - place) < 0.012f ? 0.45f : 1.0f;
+  const Vector3 own = {along + 7 * width * hash_unit(id + 77), 0.35f * width * hash_unit(id + 99), (place - 0.5f) * width};
+  return (gap * tone) * wood_colour(colour, own, 0.14f * width);
+}
+
+Vector3 tile_colour(Vector3 colour, Vector3 point, const Frame &across, float width) {
+  const float u = dot(point, across.tangent) / width, v = dot(point, across.bitangent) / width;
+  const float nearest = std::fmin(std::fabs(u - std::round(u)), std::fabs(v - std::round(v)));
+  const auto id =
+      static_cast<std::uint32_t>(static_cast<int>(std::floor(u)) * 73 + static_cast<int>(std::floor(v)) * 179 + 65536);
+  return (nearest < 0.01f ? 0.6f : 0.94f + 0.12f * hash_unit(id)) * colour;
+}
+
 } // namespace runner

@@ -14,7 +14,11 @@ The lower half mirrors it. Triangles are counter-clockwise seen from outside. Me
 """
 
 import math
+import pathlib
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import mesh_tools  # noqa: E402
 
 NECK_RADIUS = 0.0175  # 8.4 particle spacings across at the scene's own resolution
 NECK_BEND = 0.030
@@ -73,76 +77,17 @@ def evenly_spaced(points, count):
 
 
 def hourglass():
-    """Vertices and triangles (indices from 0)."""
     half = evenly_spaced(fine_profile(), RINGS_PER_HALF + 1)
     top = half[-1][1]
     upper = half[:-1]  # without the pole
     rings = [(radius, -height) for radius, height in reversed(upper[1:])] + upper
-
-    vertices = [(0.0, -top, 0.0)]
-    for radius, height in rings:
-        for s in range(SEGMENTS):
-            turn = 2 * math.pi * s / SEGMENTS
-            vertices.append((radius * math.cos(turn), height, radius * math.sin(turn)))
-    vertices.append((0.0, top, 0.0))
-
-    def at(ring, segment):
-        return 1 + ring * SEGMENTS + segment % SEGMENTS
-
-    triangles = []
-    last = len(rings) - 1
-    for s in range(SEGMENTS):
-        triangles.append((0, at(0, s), at(0, s + 1)))
-        for ring in range(last):
-            a, b = at(ring, s), at(ring, s + 1)
-            c, d = at(ring + 1, s), at(ring + 1, s + 1)
-            triangles.append((a, c, b))
-            triangles.append((b, c, d))
-        triangles.append((len(vertices) - 1, at(last, s + 1), at(last, s)))
-    return vertices, triangles
-
-
-def signed_volume(vertices, triangles):
-    total = 0.0
-    for i, j, k in triangles:
-        a, b, c = vertices[i], vertices[j], vertices[k]
-        total += (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2])
-                  + a[2] * (b[0] * c[1] - b[1] * c[0]))
-    return total / 6
-
-
-def check(vertices, triangles):
-    """Stops if the surface is not closed, not outward, or has a triangle without area."""
-    edges = set()
-    for triangle in triangles:
-        for i in range(3):
-            edge = (triangle[i], triangle[(i + 1) % 3])
-            assert edge not in edges, f"edge {edge} is used twice in the same direction"
-            edges.add(edge)
-        a, b, c = (vertices[i] for i in triangle)
-        u = [b[i] - a[i] for i in range(3)]
-        v = [c[i] - a[i] for i in range(3)]
-        normal = (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
-        assert math.hypot(*normal) > 1e-9, f"triangle {triangle} has no area"
-    assert all((b, a) in edges for a, b in edges), "the surface is open"
-    assert signed_volume(vertices, triangles) > 0, "the surface is inside out"
+    return mesh_tools.revolve(rings, -top, top, SEGMENTS)
 
 
 def main():
     path = sys.argv[1] if len(sys.argv) > 1 else "hourglass.obj"
-    vertices, triangles = hourglass()
-    check(vertices, triangles)
-    with open(path, "w", encoding="ascii") as file:
-        file.write("# An hourglass, written by make_hourglass.py. Metres, y is up, the neck is at the origin.\n")
-        file.write("o hourglass\n")
-        for vertex in vertices:
-            file.write("v %.6f %.6f %.6f\n" % vertex)
-        for triangle in triangles:
-            file.write("f %d %d %d\n" % tuple(i + 1 for i in triangle))
-    height = max(v[1] for v in vertices) * 2
-    print(f"{path}: {len(vertices)} vertices, {len(triangles)} triangles, {height:.3f} m high, "
-          f"{2 * BULB_RADIUS:.3f} m wide, neck {2 * NECK_RADIUS:.3f} m, "
-          f"{1000 * signed_volume(vertices, triangles):.2f} litres")
+    mesh_tools.write_obj(path, "hourglass", "An hourglass, written by make_hourglass.py. Metres, y is up, the neck is at the origin.",
+                         hourglass(), digits=6)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,26 @@
+#!/usr/bin/env python3
+"""Writes syringe.obj: a barrel that narrows to a nozzle, open above and below. The nozzle's mouth is at y = 0.
+
+    python3 make_syringe.py [syringe.obj]
+"""
+
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import mesh_tools  # noqa: E402
+
+NOZZLE, BARREL, WALL = 0.008, 0.026, 0.003  # inner radii, thickness
+NOZZLE_TOP, SHOULDER, TOP = 0.014, 0.034, 0.125
+
+
+def main():
+    path = sys.argv[1] if len(sys.argv) > 1 else "syringe.obj"
+    inner = [(NOZZLE, 0.0), (NOZZLE, NOZZLE_TOP), (BARREL, SHOULDER), (BARREL, TOP)]
+    outer = [(BARREL + WALL, TOP), (BARREL + WALL, SHOULDER - 0.0012), (NOZZLE + WALL, NOZZLE_TOP - 0.0012), (NOZZLE + WALL, 0.0)]
+    mesh_tools.write_obj(path, "syringe", "A syringe, written by make_syringe.py. Its mouth is at y = 0.",
+                         mesh_tools.lathe(inner + outer, 64))
+
+
+if __name__ == "__main__":
+    main()
