@@ -151,8 +151,8 @@ void RayScene::replace_mesh(std::uint32_t id, const Mesh &mesh, const Pose &pose
   if (replaced_[id]) add_mesh(opaque_, id, mesh, pose, !bounds_known_);
 }
 
-std::uint32_t RayScene::add_surface(Appearance appearance, Vector3 colour) {
-  solids_.push_back({appearance, colour, {}});
+std::uint32_t RayScene::add_surface(Appearance appearance, Vector3 colour, float lift) {
+  solids_.push_back({appearance, colour, {}, lift});
   return static_cast<std::uint32_t>(solids_.size() - 1);
 }
 

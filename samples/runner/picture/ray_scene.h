@@ -32,6 +32,8 @@ struct Solid {
   Appearance appearance = Appearance::matte;
   Vector3 colour;
   Vector3 origin; // of its own frame, for textures
+  float lift =
+      0; // by how much a ray's origin is lifted off it; 0: as off everything. Coarse surfaces would else shade themselves
 };
 
 struct Ground {
@@ -50,7 +52,7 @@ public:
   // is called for the first time, and then stand where they are at `time`.
   void set_frame(std::vector<float> spheres, double time);
   // Adds a solid whose shape is given anew for each frame, before set_frame. Returns its index.
-  std::uint32_t add_surface(Appearance appearance, Vector3 colour);
+  std::uint32_t add_surface(Appearance appearance, Vector3 colour, float lift);
   void set_surface(std::uint32_t solid, const Mesh &mesh);
 
   Hit closest(const Ray &ray) const;

@@ -31,10 +31,10 @@ Renderer::Renderer(const Scene &scene, const Particles &start)
     const Look look = std::find_if(scene.materials.begin(), scene.materials.end(), [&](const SceneMaterial &material) {
                         return material.name == emitter.material;
                       })->look;
-    surfaces_.push_back(
-        look == Look::grains
-            ? none
-            : rays_.add_surface(look == Look::glossy ? Appearance::glossy : Appearance::matte, emitter.colour));
+    surfaces_.push_back(look == Look::grains
+                            ? none
+                            : rays_.add_surface(look == Look::glossy ? Appearance::glossy : Appearance::matte,
+                                                emitter.colour, 0.2f * scene.world.kernel_radius));
   }
   in_band_.resize(start.ids.empty() ? 0 : start.ids.back() + std::size_t(1));
   for (std::size_t i = 0; i < start.count(); ++i) {
@@ -198,7 +198,8 @@ GrainLight Renderer::grain_light(std::uint32_t index) {
 Vector3 Renderer::direct(const FarLight &light, const Hit &hit, Vector3 view, float noise, int rays, float gloss) const {
   const float facing = dot(hit.normal, light.direction);
   if (facing <= 0) return {};
-  const Vector3 start = hit.position + rays_.lift() * hit.normal;
+  const float own_lift = hit.kind == Hit::solid ? rays_.solids()[hit.index].lift : 0.0f;
+  const Vector3 start = hit.position + std::fmax(rays_.lift(), own_lift) * hit.normal;
   const Frame frame(light.direction);
   int seen = 0;
   for (int i = 0; i < rays; ++i) {
@@ -227,8 +228,9 @@ Vector3 Renderer::colour_of(const Hit &hit) const {
 Vector3 Renderer::shade_solid(const Ray &ray, const Hit &hit, std::size_t pixel, float noise) const {
   const Solid &solid = rays_.solids()[hit.index];
   const SkyLight *known = still_.sky_light(pixel, hit);
-  const SkyLight sky =
-      known != nullptr ? *known : gather_sky_light(rays_, environment_, hit.position, hit.normal, 24, noise);
+  const SkyLight sky = known != nullptr ? *known
+                                        : gather_sky_light(rays_, environment_, hit.position + solid.lift * hit.normal,
+                                                           hit.normal, 24, noise);
   const Vector3 mirrored = reflect(ray.direction, hit.normal);
   Vector3 arriving = sky.irradiance;
   if (solid.appearance == Appearance::metal) {
