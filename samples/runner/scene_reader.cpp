@@ -2,20 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numbers>
 
 #include <fmt/format.h>
 
 #include "error.h"
+#include "material_reader.h"
 #include "obj_reader.h"
 #include "toml_table.h"
 
 namespace runner {
 namespace {
 
-const std::vector<std::pair<std::string_view, std::uint32_t>> laws = {
-    {"elastic", LOAM_LAW_ELASTIC}, {"von_mises", LOAM_LAW_VON_MISES}, {"drucker_prager", LOAM_LAW_DRUCKER_PRAGER}};
 const std::vector<std::pair<std::string_view, std::uint32_t>> solvers = {{"gauss_seidel", LOAM_SOLVER_GAUSS_SEIDEL},
                                                                          {"jacobi", LOAM_SOLVER_JACOBI}};
 const std::vector<std::pair<std::string_view, std::uint32_t>> plasticities = {
@@ -35,8 +33,6 @@ const std::vector<std::pair<std::string_view, Appearance>> appearances = {
 
 const std::vector<std::pair<std::string_view, Appearance>> plane_appearances = {
     {"hidden", Appearance::hidden}, {"matte", Appearance::matte}, {"wood", Appearance::wood}, {"tiles", Appearance::tiles}};
-const std::vector<std::pair<std::string_view, Look>> looks = {
-    {"grains", Look::grains}, {"smooth", Look::smooth}, {"glossy", Look::glossy}};
 
 // Defaults come from the library, and they cannot fail for the struct sizes of its own headers unless it is a different version.
 void expect_ok(loam_status status, const char *call) {
@@ -110,35 +106,10 @@ private:
   }
 
   void read_material(TomlTable &table) {
-    SceneMaterial material;
-    material.place = table.place();
-    table.require("name");
-    table.require("law");
-    table.read("name", material.name);
-    std::uint32_t law = LOAM_LAW_ELASTIC;
-    table.read("law", law, laws);
-    loam_material_def &def = material.def;
-    expect_ok(loam_material_def_default(law, &def, sizeof def), "loam_material_def_default");
-    if (material.name.empty() || material.name.size() >= sizeof def.name)
-      table.fail("name", fmt::format("must have 1 to {} characters", sizeof def.name - 1));
+    const float *gravity = scene_.world.gravity;
+    const SceneMaterial material = runner::read_material(table, length(Vector3{gravity[0], gravity[1], gravity[2]}));
     for (const SceneMaterial &other : scene_.materials)
       if (other.name == material.name) table.fail("name", fmt::format("there is a material \"{}\" already", material.name));
-    std::memset(def.name, 0, sizeof def.name);
-    std::memcpy(def.name, material.name.data(), material.name.size());
-    table.read("density", def.density);
-    table.read("youngs_modulus", def.youngs_modulus);
-    table.read("poissons_ratio", def.poissons_ratio);
-    table.read("yield_stress", def.yield_stress);
-    if (table.has("friction_angle_degrees")) {
-      double degrees = 0;
-      table.read("friction_angle_degrees", degrees);
-      def.friction_angle = static_cast<float>(degrees * std::numbers::pi / 180);
-    }
-    table.read("cohesion", def.cohesion);
-    table.read("colour", material.colour);
-    table.read("colour_variation", material.colour_variation);
-    table.read("look", material.look, looks);
-    table.finish();
     scene_.materials.push_back(material);
   }
 

@@ -216,7 +216,7 @@ Vector3 Renderer::direct(const FarLight &light, const Hit &hit, Vector3 view, fl
 
 Vector3 Renderer::shade_particle(const Ray &ray, const Hit &hit, float noise) {
   Vector3 arriving = grain_light(hit.index).irradiance(hit.normal);
-  arriving += direct(environment_.key(), hit, -ray.direction, noise, 1, 0.12f);
+  arriving += direct(environment_.key(), hit, -ray.direction, noise, 3, 0.12f);
   arriving += direct(environment_.rim(), hit, -ray.direction, noise, 1, 0.10f);
   return (1 / pi) * (colours_[hit.index] * arriving);
 }
