@@ -70,6 +70,16 @@ Vector3 smooth_normal(RTCScene scene, const RTCRayHit &found) {
   return dot(flat, direction) * dot(flat, normal) > 0 ? -normal : normal;
 }
 
+// For meshes that stand for something round: a share of their edges' length.
+float lift_off(const Mesh &mesh) {
+  constexpr std::size_t fine = 500; // triangles; what has fewer is meant to have flat sides
+  if (mesh.triangle_count() < fine) return 0;
+  float sum = 0;
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i)
+    sum += length(mesh.vertices[mesh.indices[i]] - mesh.vertices[mesh.indices[i % 3 == 2 ? i - 2 : i + 1]]);
+  return 0.15f * sum / static_cast<float>(mesh.indices.size());
+}
+
 } // namespace
 
 RayScene::RayScene(const Scene &scene) {
@@ -99,7 +109,7 @@ RayScene::RayScene(const Scene &scene) {
     const Mesh &mesh = scene.meshes.at(collider.file);
     const bool glass = collider.appearance == Appearance::glass;
     const std::uint32_t id = glass ? panes_++ : static_cast<std::uint32_t>(solids_.size());
-    if (!glass) solids_.push_back({collider.appearance, collider.colour, collider.pose.position});
+    if (!glass) solids_.push_back({collider.appearance, collider.colour, collider.pose.position, lift_off(mesh)});
     if (!glass && !collider.motions.empty())
       moving_.push_back({id, &collider, &mesh});
     else
