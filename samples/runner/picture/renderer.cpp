@@ -230,7 +230,7 @@ Vector3 Renderer::shade_solid(const Ray &ray, const Hit &hit, std::size_t pixel,
   const SkyLight *known = still_.sky_light(pixel, hit);
   const SkyLight sky = known != nullptr ? *known
                                         : gather_sky_light(rays_, environment_, hit.position + solid.lift * hit.normal,
-                                                           hit.normal, 24, noise);
+                                                           hit.normal, 40, noise);
   const Vector3 mirrored = reflect(ray.direction, hit.normal);
   Vector3 arriving = sky.irradiance;
   if (solid.appearance == Appearance::metal) {
@@ -240,8 +240,8 @@ Vector3 Renderer::shade_solid(const Ray &ray, const Hit &hit, std::size_t pixel,
     const Vector3 mirror = free ? environment_.mirrored(mirrored) : (0.5f / pi) * (sky.irradiance * colour_of(other));
     return solid.colour * (0.8f * mirror + (0.22f / pi) * arriving);
   }
-  arriving += direct(environment_.key(), hit, -ray.direction, noise, 3, 0.15f);
-  arriving += direct(environment_.rim(), hit, -ray.direction, noise, 1, 0.15f);
+  arriving += direct(environment_.key(), hit, -ray.direction, noise, 10, 0.15f);
+  arriving += direct(environment_.rim(), hit, -ray.direction, noise, 4, 0.15f);
   Vector3 colour = solid.colour;
   float coat = 0;
   if (solid.appearance == Appearance::wood) {

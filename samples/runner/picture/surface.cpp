@@ -14,10 +14,10 @@
 namespace runner {
 namespace {
 
-constexpr float reach = 2.1f;   // of a particle, in spacings
+constexpr float reach = 2.4f;   // of a particle, in spacings
 constexpr float radius = 0.62f; // by which the surface lies outside the means, in spacings
 constexpr float cell = 0.4f;    // of the grid, in spacings
-constexpr int smoothing = 4;    // passes over the finished mesh
+constexpr int smoothing = 8;    // passes over the finished mesh
 
 constexpr int edge = 8;            // nodes of a block along each axis
 constexpr int outermost = 1 << 20; // nodes from the origin along each axis that a block's key can hold
