@@ -181,4 +181,63 @@ TEST(RunnerSceneReader, ReadsEveryScene) {
   EXPECT_GE(scenes, 1);
 }
 
+std::string of_material(const std::string &lines) {
+  return replaced(minimal, "law = \"drucker_prager\"\nfriction_angle_degrees = 30\n", lines);
+}
+
+loam_material_def material_of(const std::string &lines) {
+  const TemporaryFolder folder;
+  return runner::read_scene(folder.write("scene.toml", of_material(lines))).materials[0].def;
+}
+
+TEST(RunnerSceneReader, TakesAPresetAndWhatItOverrides) {
+  loam_material_def preset{};
+  ASSERT_EQ(loam_material_def_preset("packed snow", &preset, sizeof preset), LOAM_OK);
+  const loam_material_def def = material_of("preset = \"packed snow\"\nyoungs_modulus = 3e5\n");
+  EXPECT_EQ(def.law, static_cast<uint32_t>(LOAM_LAW_NACC));
+  EXPECT_EQ(def.cohesion_ratio, preset.cohesion_ratio);
+  EXPECT_FLOAT_EQ(def.youngs_modulus, 3e5f);
+  EXPECT_STREQ(def.name, "sand") << "the scene's name for it";
+}
+
+TEST(RunnerSceneReader, RefusesUnknownPresetsAndNumbersOfOtherLaws) {
+  expect_mentions(scene_error(of_material("preset = \"packed sno\"\n")),
+                  {"scene.toml:6:", "materials[0].preset", "packed sno", "toothpaste"});
+  expect_mentions(scene_error(of_material("preset = \"candy\"\nlaw = \"nacc\"\n")), {"scene.toml:7:", "materials[0].law"});
+  expect_mentions(scene_error(of_material("preset = \"candy\"\nyield_stress = 3\n")),
+                  {"scene.toml:7:", "yield_stress", "unknown key", "cohesion_ratio"});
+}
+
+TEST(RunnerSceneReader, FindsNumbersFromWhatADesignerKnows) {
+  const loam_material_def sand = material_of("law = \"drucker_prager\"\nangle_of_repose_degrees = 34.7\n"
+                                             "density = 1600\nsinking = { height = 0.5, by = 0.002 }\n");
+  EXPECT_NEAR(sand.friction_angle * 180 / std::numbers::pi, 30, 0.1);
+  EXPECT_NEAR(sand.youngs_modulus, 1600 * 9.81 * 0.5 * 0.5 / (2 * 0.002), 1e3);
+  const loam_material_def clay = material_of("law = \"von_mises\"\ndensity = 1000\nstands_to_height = 0.3\n");
+  EXPECT_NEAR(clay.yield_stress, 1000 * 9.81 * 0.3, 1);
+  const loam_material_def paint = material_of(
+      "law = \"herschel_bulkley\"\ndensity = 1200\nflow_exponent = 1\npuddle = { volume = 0.001, radius = 0.15 }\n"
+      "film = { thickness = 0.01, slope_degrees = 90, speed = 0.1 }\n");
+  const double yield = 225 * 1200 * 9.81 * 1e-6 / (128 * std::pow(std::numbers::pi, 2) * std::pow(0.15, 5));
+  EXPECT_NEAR(paint.shear_yield_stress, yield, 0.01 * yield);
+  const double sheared = 0.01 - yield / (1200 * 9.81);
+  EXPECT_NEAR(paint.consistency, 1200 * 9.81 * sheared * sheared / (2 * 0.1), 0.5);
+  const loam_material_def candy = material_of("law = \"nacc\"\nstrengths = { compressive = 2e4, tensile = 1e4, "
+                                              "friction_angle_degrees = 40, opening = 0.002 }\n");
+  EXPECT_NEAR(candy.cohesion_ratio, 0.5, 1e-6);
+  EXPECT_LT(candy.consolidation, 0);
+}
+
+TEST(RunnerSceneReader, RefusesTwoAnswersToOneQuestionAndImpossibleOnes) {
+  expect_mentions(scene_error(of_material("law = \"von_mises\"\nyield_stress = 3\nstands_to_height = 1\n")),
+                  {"scene.toml:8:", "stands_to_height", "yield_stress"});
+  expect_mentions(scene_error(of_material("law = \"von_mises\"\nstands_to_height = -1\n")),
+                  {"scene.toml:7:", "stands_to_height", "-1"});
+  expect_mentions(scene_error(of_material("law = \"elastic\"\nsinking = { height = 1 }\n")),
+                  {"scene.toml:7:", "materials[0].sinking.by", "missing"});
+  expect_mentions(scene_error(of_material("law = \"herschel_bulkley\"\nshear_yield_stress = 1e5\n"
+                                          "film = { thickness = 0.01, slope_degrees = 45, speed = 1 }\n")),
+                  {"scene.toml:8:", "materials[0].film"});
+}
+
 } // namespace
