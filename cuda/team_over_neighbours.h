@@ -23,16 +23,16 @@ template <class TileType> struct TeamOverNeighbours {
   Tile tile;
   Visit visit{};
   float *record = nullptr;
-  float fields[TilePairs::record_stride] = {}; // of the record, as the visit found it
+  float fields[TilePairs::most_fields] = {}; // of the record, as the visit found it
 
   LOAM_FN TeamOverNeighbours(const TilePairs &pairs, const Tile &own_tile) : d(pairs), tile(own_tile) {}
 
   // Around each visit.
   LOAM_FN void open(int p) {
     visit = d.visits[p];
-    record = d.records + static_cast<std::int64_t>(p) * TilePairs::record_stride;
+    record = d.records + static_cast<std::int64_t>(p) * d.record_stride;
     // Asked for all at once and early, so that they arrive while the neighbours are gathered. What a stage does not use is not loaded.
-    for (int i = 0; i < TilePairs::record_stride; i += 4) {
+    for (int i = 0; i < TilePairs::most_fields; i += 4) {
       const Row row = *reinterpret_cast<const Row *>(record + i);
       fields[i] = row.x;
       fields[i + 1] = row.y;

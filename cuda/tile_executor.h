@@ -32,9 +32,9 @@ public:
   TileExecutor &operator=(const TileExecutor &) = delete;
 
   template <class T> Array<T> array() { return machine_.template array<T>(); }
-  void reserve(std::size_t particle_capacity, int material_count) {
+  void reserve(std::size_t particle_capacity, int material_count, int record_size) {
     machine_.reserve(particle_capacity);
-    order_.reserve(particle_capacity, material_count);
+    order_.reserve(particle_capacity, material_count, record_size);
   }
   // None: lanes without a particle do nothing.
   static std::size_t spare_rows(int) { return 0; }

@@ -5,7 +5,7 @@
 //
 //   index[line][16]         the neighbours; close ones, which position correction looks at, first
 //   gradient[line][3][16]
-//   record[visit][24]       the constraint's record, see Record
+//   record[visit][stride]   the constraint's record, see Record: whole 32-byte sectors
 //
 // What stands in a list's last line beyond its end is never read.
 #pragma once
@@ -25,15 +25,17 @@ struct alignas(16) Visit {
 };
 
 struct TilePairs {
-  static constexpr int line = 16;          // pairs
-  static constexpr int record_stride = 24; // floats: whole 32-byte sectors
-  static_assert(Record::field_count <= record_stride);
+  static constexpr int line = 16;  // pairs
+  static constexpr int sector = 8; // floats
+  static constexpr int most_fields = Record::field_count;
+  static_assert(most_fields % 4 == 0);
 
   Row *velocities;
   const Visit *visits;
   int *indices;
   float *gradients;
   float *records;
+  int record_stride;
 };
 
 // Blocks of cells to be worked through at once: block k of them is `order[k]`, and its visits are starts[order[k]] up to starts[order[k] + 1].

@@ -42,7 +42,8 @@ public:
         records_(machine.template array<float>()) {}
 
   // Room for a world's particles and materials; may be called again for more materials.
-  void reserve(std::size_t particle_capacity, int material_count) {
+  void reserve(std::size_t particle_capacity, int material_count, int record_size) {
+    record_stride_ = (record_size + TilePairs::sector - 1) / TilePairs::sector * TilePairs::sector;
     keys_.reserve(particle_capacity);
     particles_.reserve(particle_capacity);
     sums_.reserve(particle_capacity);
@@ -51,7 +52,8 @@ public:
     entry_passes_.reserve(particle_capacity);
     entry_keys_.reserve(particle_capacity);
     entry_order_.reserve(particle_capacity);
-    records_.reserve(particle_capacity * TilePairs::record_stride);
+    // A visit reads as many fields as a record can have, so past the last record there must be some.
+    records_.reserve(particle_capacity * static_cast<std::size_t>(record_stride_) + TilePairs::most_fields);
     const std::size_t passes = static_cast<std::size_t>(most_colours) * static_cast<std::size_t>(material_count);
     pass_rows_.reserve(passes + 1);
     rows_.resize(passes + 1);
@@ -95,7 +97,7 @@ public:
             pass.last_entry - pass.first_entry};
   }
   TilePairs pairs(Row *velocities) {
-    return {velocities, visits_.data(), indices_.data(), gradients_.data(), records_.data()};
+    return {velocities, visits_.data(), indices_.data(), gradients_.data(), records_.data(), record_stride_};
   }
 
   std::size_t list_bytes() const { return indices_.bytes() + gradients_.bytes(); }
@@ -162,6 +164,7 @@ private:
   Array<PassRow> pass_rows_;
   Array<int> indices_;
   Array<float> gradients_, records_;
+  int record_stride_ = 0;
 };
 
 } // namespace loam

@@ -27,6 +27,15 @@ enum {
   LOAM_SOLVER_JACOBI = 1        /* all at once, with split masses: fewer, larger launches; needs more iterations */
 };
 
+/* The form of the constraints' Lagrange multipliers. */
+enum {
+  LOAM_MULTIPLIER_PROJECTED_TENSOR =
+      0, /* an impulse tensor a particle, corrected in every visit until it is that of the implicit step: with more
+                                         * iterations or shorter substeps the motion converges to the material's */
+  LOAM_MULTIPLIER_SCALAR =
+      1 /* one scalar a particle, as in the XPBI paper; somewhat cheaper; bodies act softer than their moduli, and creep */
+};
+
 /* When the plastic return mapping acts. */
 enum {
   LOAM_PLASTICITY_IMPLICIT = 0, /* inside every iteration, as the method asks */
@@ -92,6 +101,13 @@ typedef struct loam_world_def {
   loam_allocator allocator;
   loam_job_system job_system;
   loam_log log;
+
+  uint32_t multiplier; /* LOAM_MULTIPLIER_*; default PROJECTED_TENSOR */
+
+  /* Motion of neighbours against each other that no velocity gradient shows (zig-zags) is resisted by a spring with this share of the shear
+   * modulus, and yields with the matter; it is independent of the substep and vanishes as r becomes small. For all laws but DRUCKER_PRAGER, with
+   * PROJECTED_TENSOR. 0 to 100; default 1. */
+  float zero_energy_stiffness;
 } loam_world_def;
 
 /* Writes the defaults above. `size` is sizeof(loam_world_def); at most that many bytes are written.

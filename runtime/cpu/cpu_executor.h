@@ -30,9 +30,9 @@ public:
         order_(allocator_, table_->width, workers_.thread_count()), next_of_part_(workers_.thread_count()) {}
 
   template <class T> Array<T> array() { return Array<T>(allocator_); }
-  void reserve(std::size_t particle_capacity, int material_count) {
+  void reserve(std::size_t particle_capacity, int material_count, int record_size) {
     sort_.reserve(particle_capacity);
-    order_.reserve(particle_capacity, material_count);
+    order_.reserve(particle_capacity, material_count, record_size);
   }
   // Rows that the particle arrays need beyond the particles.
   static std::size_t spare_rows(int material_count) {

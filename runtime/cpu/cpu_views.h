@@ -26,6 +26,7 @@ struct CpuPairs {
   int *indices;
   float *gradients;
   float *records;
+  int record_size; // fields
 };
 
 // What the candidate search reads and writes.

@@ -108,9 +108,7 @@ struct TeamOverCells {
   }
 
   // of the record
-  LOAM_FN float *place(int b, int field) const {
-    return d.records + (static_cast<long>(b) * Record::field_count + field) * W;
-  }
+  LOAM_FN float *place(int b, int field) const { return d.records + (static_cast<long>(b) * d.record_size + field) * W; }
   LOAM_FN Pack field(int b, int field) const { return Pack::load(place(b, field)); }
   LOAM_FN void set_field(int b, int field, Pack value) const { value.store(place(b, field)); }
   LOAM_FN Vec3<Pack> vector(int b, int f) const { return {field(b, f), field(b, f + 1), field(b, f + 2)}; }

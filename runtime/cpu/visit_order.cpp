@@ -14,7 +14,8 @@ VisitOrder::VisitOrder(const HostAllocator &allocator, int width, unsigned threa
       active_(allocator), offsets_(allocator), close_steps_(allocator), slots_(allocator), indices_(allocator),
       gradients_(allocator), records_(allocator), scratch_(allocator) {}
 
-void VisitOrder::reserve(std::size_t particle_capacity, int material_count) {
+void VisitOrder::reserve(std::size_t particle_capacity, int material_count, int record_size) {
+  record_size_ = record_size;
   slots_.reserve(particle_capacity);
   const auto most_passes = static_cast<std::size_t>(27 * material_count);
   passes_.reserve(most_passes);
@@ -269,7 +270,7 @@ void VisitOrder::make_room() {
     scratch_size_ = std::max(scratch_size_, (3 * W * most + most / 8 + 63) / 64 * 64);
     if (scratch_size_ * threads_ > scratch_.capacity()) scratch_.reserve(scratch_size_ * threads_);
   }
-  grow(records_, static_cast<std::size_t>(batch_count_) * Record::field_count * W);
+  grow(records_, static_cast<std::size_t>(batch_count_) * static_cast<std::size_t>(record_size_) * W);
 }
 
 void VisitOrder::interleave_lists(const int *lists, int first_batch, int last_batch) {
@@ -293,8 +294,8 @@ void VisitOrder::interleave_lists(const int *lists, int first_batch, int last_ba
 }
 
 CpuPairs VisitOrder::pairs(Row *velocities) {
-  return {velocities,          ids_.data(),     active_.data(),    offsets_.data(),
-          close_steps_.data(), indices_.data(), gradients_.data(), records_.data()};
+  return {velocities,      ids_.data(),       active_.data(),  offsets_.data(), close_steps_.data(),
+          indices_.data(), gradients_.data(), records_.data(), record_size_};
 }
 
 } // namespace loam

@@ -22,8 +22,8 @@ public:
 
   VisitOrder(const HostAllocator &allocator, int width, unsigned threads);
 
-  // Room for a world's particles; called once.
-  void reserve(std::size_t particle_capacity, int material_count);
+  // Room for a world's particles and their records of so many fields; called again when these become more.
+  void reserve(std::size_t particle_capacity, int material_count, int record_size);
 
   // Sorts out blocks, groups and batches, and gives each list its place. Returns the number of pair steps; make_room() must follow.
   std::int64_t arrange(Workers &workers, const CellTable &table);
@@ -88,6 +88,7 @@ private:
   void fill_group(const CellTable &table, int group, int pass_index);
 
   int width_;
+  int record_size_ = 0;
   unsigned threads_;
   CellTable table_{};
   int batch_count_ = 0;

@@ -76,6 +76,16 @@ template <class T> LOAM_FN Vec3<T> operator*(const Sym3<T> &a, Vec3<T> v) {
   return {a.xx * v.x + (a.xy * v.y + a.xz * v.z), a.xy * v.x + (a.yy * v.y + a.yz * v.z),
           a.xz * v.x + (a.yz * v.y + a.zz * v.z)};
 }
+template <class T> LOAM_FN Mat3<T> transpose(const Mat3<T> &a) {
+  return {{{a.m[0][0], a.m[1][0], a.m[2][0]}, {a.m[0][1], a.m[1][1], a.m[2][1]}, {a.m[0][2], a.m[1][2], a.m[2][2]}}};
+}
+// a b^T
+template <class T> LOAM_FN Mat3<T> multiply_transposed(const Mat3<T> &a, const Mat3<T> &b) {
+  Mat3<T> c;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) c.m[i][j] = a.m[i][0] * b.m[j][0] + (a.m[i][1] * b.m[j][1] + a.m[i][2] * b.m[j][2]);
+  return c;
+}
 template <class T> LOAM_FN T determinant(const Mat3<T> &a) {
   return a.m[0][0] * (a.m[1][1] * a.m[2][2] - a.m[1][2] * a.m[2][1]) -
          a.m[0][1] * (a.m[1][0] * a.m[2][2] - a.m[1][2] * a.m[2][0]) +

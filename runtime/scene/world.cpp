@@ -62,6 +62,8 @@ loam_world_def default_world() {
   def.minimum_distance = 0.75f;
   def.gradient_cutoff = 0.2f;
   def.particle_capacity = 65536;
+  def.multiplier = LOAM_MULTIPLIER_PROJECTED_TENSOR;
+  def.zero_energy_stiffness = 1;
   return def;
 }
 
@@ -80,6 +82,8 @@ void check_world_def(const loam_world_def &def) {
   check_choice("instruction_set", def.instruction_set, LOAM_INSTRUCTION_SET_AVX512);
   check_range("particle_capacity", static_cast<double>(def.particle_capacity), 1, 268435456);
   check_hooks(def);
+  check_choice("multiplier", def.multiplier, LOAM_MULTIPLIER_SCALAR);
+  check_range("zero_energy_stiffness", static_cast<double>(def.zero_energy_stiffness), 0, 100);
 }
 
 } // namespace loam
@@ -100,6 +104,8 @@ loam_world::loam_world(const loam_world_def &def)
                                    def.velocity_smoothing,
                                    def.solver == LOAM_SOLVER_JACOBI,
                                    def.plasticity == LOAM_PLASTICITY_SEMI_IMPLICIT,
+                                   def.multiplier == LOAM_MULTIPLIER_PROJECTED_TENSOR,
+                                   def.zero_energy_stiffness,
                                    def.particle_capacity,
                                    def.pair_capacity};
   if (def.backend == LOAM_BACKEND_CUDA || (def.backend == LOAM_BACKEND_AUTO && cuda_available())) {

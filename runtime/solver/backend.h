@@ -36,6 +36,8 @@ struct SolverSettings {
   float velocity_smoothing; // 1/s; 0: off
   bool jacobi;
   bool semi_implicit;
+  bool projected_tensor;       // the multiplier form: the tensor or the scalar
+  float zero_energy_stiffness; // see kernels/inelastic/non_affine.h; the tensor form only
   std::uint64_t particle_capacity;
   std::uint64_t pair_capacity; // 0: grows
   bool keep_free_distances =

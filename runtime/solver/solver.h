@@ -40,16 +40,16 @@ private:
   // One copy of all particle data; sorting moves it from one to the other.
   struct ParticleStorage {
     Array<Row> positions, velocities;
-    Array<float> strains, histories, log_volumes, rest_volumes;
+    Array<float> strains, histories, drifts, log_volumes, rest_volumes;
     Array<std::uint32_t> ids, materials;
     Array<float> free_distances; // while there are meshes
     ParticleArrays arrays() {
-      return {positions.data(),    velocities.data(), strains.data(),   histories.data(),     log_volumes.data(),
-              rest_volumes.data(), ids.data(),        materials.data(), free_distances.data()};
+      return {positions.data(),   velocities.data(),   strains.data(), histories.data(), drifts.data(),
+              log_volumes.data(), rest_volumes.data(), ids.data(),     materials.data(), free_distances.data()};
     }
     std::uint64_t bytes() const {
-      return positions.bytes() + velocities.bytes() + strains.bytes() + histories.bytes() + log_volumes.bytes() +
-             rest_volumes.bytes() + ids.bytes() + materials.bytes() + free_distances.bytes();
+      return positions.bytes() + velocities.bytes() + strains.bytes() + histories.bytes() + drifts.bytes() +
+             log_volumes.bytes() + rest_volumes.bytes() + ids.bytes() + materials.bytes() + free_distances.bytes();
     }
   };
   struct Mesh {
@@ -65,8 +65,8 @@ private:
     return {executor_.template array<Row>(),           executor_.template array<Row>(),
             executor_.template array<float>(),         executor_.template array<float>(),
             executor_.template array<float>(),         executor_.template array<float>(),
-            executor_.template array<std::uint32_t>(), executor_.template array<std::uint32_t>(),
-            executor_.template array<float>()};
+            executor_.template array<float>(),         executor_.template array<std::uint32_t>(),
+            executor_.template array<std::uint32_t>(), executor_.template array<float>()};
   }
   void reserve_storage(ParticleStorage &storage, std::size_t rows);
   void reserve_histories();
@@ -91,6 +91,11 @@ private:
   template <class F> void with_law(int material, F &&f) {
     std::visit([&](const auto &law) { f(law, limit_of(law)); }, materials_[static_cast<std::size_t>(material)].law);
   }
+  // Calls f(law, limit, multiplier form) with what holds inside the iterations.
+  template <class F> void with_constraint(int material, F &&f);
+  float drift_stiffness() const {
+    return settings_.zero_energy_stiffness / (settings_.kernel_radius * settings_.kernel_radius);
+  }
   template <class Law> static StrainLimit limit_of(const Law &) { return strain_limit(Law::greatest_strain); }
   void lap(int stage, std::uint64_t items) { executor_.lap(schedule_, stage, items); }
   std::uint64_t particles() const { return static_cast<std::uint64_t>(count_); }
@@ -104,7 +109,8 @@ private:
   int material_capacity_ = 0;
   int count_ = 0;
   std::size_t spare_row_ = 0; // index of the first
-  bool histories_in_use_ = false;
+  bool histories_in_use_ = false, drifts_in_use_ = false;
+  int record_size_ = 0;
 
   ParticleStorage now_, other_;
   Array<std::uint32_t> keys_, order_;
@@ -112,7 +118,7 @@ private:
   Array<int> cell_starts_, neighbour_counts_, close_counts_;
   Array<int> counters_; // speed limited, strain limited, contacts
   Array<float> corrections_, densities_;
-  Array<Row> jacobi_rows_[3];
+  Array<Row> jacobi_rows_[3], jacobi_drift_rows_[3];
   std::vector<Mesh> meshes_;
   std::vector<ColliderView> views_, views_before_; // of this substep and the one before
   ColliderMotion collider_motion_;
@@ -142,6 +148,7 @@ Solver<Executor>::Solver(const SolverSettings &settings, const ExecutionSettings
       densities_(executor_.template array<float>()), jacobi_rows_{executor_.template array<Row>(),
                                                                   executor_.template array<Row>(),
                                                                   executor_.template array<Row>()},
+      jacobi_drift_rows_{executor_.template array<Row>(), executor_.template array<Row>(), executor_.template array<Row>()},
       collider_views_(executor_.template array<ColliderView>()), contacts_(executor_.template array<Contact>()) {
   const auto capacity = static_cast<std::size_t>(settings_.particle_capacity);
   spare_row_ = capacity;
@@ -174,15 +181,31 @@ template <class Executor> void Solver<Executor>::reserve_storage(ParticleStorage
   grow(storage.ids, 1);
   grow(storage.materials, 1);
   if (histories_in_use_) grow(storage.histories, 1);
+  if (drifts_in_use_) grow(storage.drifts, 3);
 }
 
 template <class Executor> void Solver<Executor>::set_materials(const std::vector<SolverMaterial> &materials) {
   const int wanted = std::max(1, static_cast<int>(materials.size()));
-  if (wanted > material_capacity_) {
-    // Spare rows and passes are per material: room for a few more at a time.
-    const int capacity = std::max(wanted, std::min(2 * material_capacity_, 4096));
-    const std::size_t rows = spare_row_ + Executor::spare_rows(capacity);
-    executor_.reserve(static_cast<std::size_t>(settings_.particle_capacity), capacity);
+  // Spare rows and passes are per material: room for a few more at a time.
+  const bool more = wanted > material_capacity_;
+  const int capacity = more ? std::max(wanted, std::min(2 * material_capacity_, 4096)) : material_capacity_;
+  const std::size_t rows = spare_row_ + Executor::spare_rows(capacity);
+  bool history = histories_in_use_, drift = drifts_in_use_;
+  for (const SolverMaterial &material : materials)
+    std::visit(
+        [&](const auto &law) {
+          using Law = std::remove_cvref_t<decltype(law)>;
+          history = history || Law::has_history;
+          drift = drift || (settings_.projected_tensor && Law::resists_zero_energy_modes);
+        },
+        material.law);
+  const int fields =
+      record_size(settings_.projected_tensor ? ProjectedTensor<false>::state_count : ScalarMultiplier::state_count, drift);
+  if (more || fields > record_size_) {
+    executor_.reserve(static_cast<std::size_t>(settings_.particle_capacity), capacity, fields);
+    record_size_ = fields;
+  }
+  if (more) {
     reserve_storage(now_, rows);
     reserve_storage(other_, rows);
     neighbour_counts_.reserve(rows);
@@ -190,6 +213,8 @@ template <class Executor> void Solver<Executor>::set_materials(const std::vector
     if (settings_.jacobi) {
       corrections_.reserve(rows * 6);
       for (Array<Row> &column : jacobi_rows_) column.reserve(rows);
+      if (drifts_in_use_)
+        for (Array<Row> &column : jacobi_drift_rows_) column.reserve(rows);
     }
     // Spare rows take part in arithmetic: a rest volume of 0 would be a division by 0.
     const int spare = static_cast<int>(rows - spare_row_);
@@ -197,14 +222,18 @@ template <class Executor> void Solver<Executor>::set_materials(const std::vector
     executor_.set(other_.rest_volumes.data() + spare_row_, spare, 1.0f);
     material_capacity_ = capacity;
   }
-  bool history = histories_in_use_;
-  for (const SolverMaterial &material : materials)
-    std::visit([&](const auto &law) { history = history || std::remove_cvref_t<decltype(law)>::has_history; }, material.law);
   if (history && !histories_in_use_) {
-    const std::size_t rows = spare_row_ + Executor::spare_rows(material_capacity_);
     now_.histories.reserve(rows);
     other_.histories.reserve(rows);
     histories_in_use_ = true; // only now: memory may have been refused
+  }
+  if (drift && !drifts_in_use_) {
+    now_.drifts.reserve(3 * rows);
+    other_.drifts.reserve(3 * rows);
+    if (settings_.jacobi)
+      for (Array<Row> &column : jacobi_drift_rows_) column.reserve(rows);
+    executor_.set(now_.drifts.data(), 3 * count_, 0.0f);
+    drifts_in_use_ = true;
   }
   materials_ = materials;
   schedule_is_current_ = false;
@@ -263,6 +292,7 @@ template <class Executor> void Solver<Executor>::add_particles(const NewParticle
         std::visit([](const auto &law) { return law.initial_history(); }, materials_[particles.material].law);
     executor_.set(now_.histories.data() + at, count, history);
   }
+  if (drifts_in_use_) executor_.set(now_.drifts.data() + 3 * at, 3 * count, 0.0f);
   if (now_.free_distances.capacity() > 0) executor_.set(now_.free_distances.data() + at, count, 0.0f);
   count_ += count;
 }
@@ -299,6 +329,7 @@ template <class Executor> std::vector<MemoryUse> Solver<Executor>::memory() cons
   if (settings_.jacobi) {
     std::uint64_t bytes = corrections_.bytes();
     for (const Array<Row> &column : jacobi_rows_) bytes += column.bytes();
+    for (const Array<Row> &column : jacobi_drift_rows_) bytes += column.bytes();
     uses.push_back({"Jacobi solver", bytes});
   }
   std::uint64_t colliders = collider_views_.bytes() + contacts_.bytes();

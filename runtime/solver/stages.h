@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/inelastic/measure_constraint.h"
+#include "kernels/inelastic/projected_tensor.h"
 #include "kernels/inelastic/scalar_multiplier.h"
 #include "kernels/inelastic/solve_inelastic.h"
 #include "kernels/inelastic/solve_jacobi.h"
@@ -20,16 +21,31 @@ template <class... A, class... B, class... Rest> struct Concatenate<TypeList<A..
   using Type = typename Concatenate<TypeList<A..., B...>, Rest...>::Type;
 };
 
-template <class Law>
-using StagesOfLaw = TypeList<SolveInelastic<Law, ScalarMultiplier>, JacobiImpulse<Law, ScalarMultiplier>, UpdateStrain<Law>,
-                             MeasureConstraint<Law, ScalarMultiplier>>;
+template <class Law, class Multiplier>
+using StagesOfForm =
+    TypeList<SolveInelastic<Law, Multiplier>, JacobiImpulse<Law, Multiplier>, MeasureConstraint<Law, Multiplier>>;
+
+// The tensor form for a law's matter.
+template <class Law> using TensorOf = ProjectedTensor<Law::resists_zero_energy_modes>;
+
+template <class Law, bool Resists = Law::resists_zero_energy_modes> struct StagesOfLaw {
+  using Type = typename Concatenate<StagesOfForm<Law, ScalarMultiplier>, StagesOfForm<Law, TensorOf<Law>>,
+                                    TypeList<UpdateStrain<Law, false>>>::Type;
+};
+template <class Law> struct StagesOfLaw<Law, true> {
+  using Type = typename Concatenate<typename StagesOfLaw<Law, false>::Type, TypeList<UpdateStrain<Law, true>>>::Type;
+};
 
 template <class List> struct StagesOfLaws;
-template <class... L> struct StagesOfLaws<TypeList<L...>> { using Type = typename Concatenate<StagesOfLaw<L>...>::Type; };
+template <class... L> struct StagesOfLaws<TypeList<L...>> {
+  using Type = typename Concatenate<typename StagesOfLaw<L>::Type...>::Type;
+};
 
-using TeamStages =
-    Concatenate<TypeList<ComputeGradients, CorrectPositionsInTurn, CorrectPositionsAtOnce, SmoothVelocities, JacobiApply>,
-                StagesOfLaws<Laws>::Type>::Type;
+using TeamStages = Concatenate<
+    TypeList<ComputeGradients<false>, ComputeGradients<true>, CorrectPositionsInTurn, CorrectPositionsAtOnce,
+             SmoothVelocities, JacobiApply<false>, JacobiApply<true>>,
+    StagesOfForm<Elastic, ProjectedTensor<false>>, // semi-implicit plasticity of matter that resists no zero-energy modes
+    StagesOfLaws<Laws>::Type>::Type;
 using CandidateStages = TypeList<CountNeighbours, FillNeighbours>;
 
 template <class Stage, class List> struct IndexOf;

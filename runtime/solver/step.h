@@ -126,12 +126,28 @@ template <class Executor> void Solver<Executor>::search_neighbours() {
   ex.fill_neighbours(table_, FillNeighbours{test, neighbour_counts_.data(), close_counts_.data()});
   lap(schedule_.search, pairs_);
 
-  ex.for_each_particle(now_.velocities.data(),
-                       ComputeGradients{now_.positions.data(), now_.velocities.data(), now_.strains.data(),
-                                        histories_in_use_ ? now_.histories.data() : nullptr, now_.rest_volumes.data(),
-                                        neighbour_counts_.data(), close_counts_.data(),
-                                        settings_.jacobi ? corrections_.data() : nullptr, kernel_,
-                                        settings_.gradient_cutoff});
+  const auto gradients = [&](auto non_affine) {
+    return ComputeGradients<non_affine.value>{now_.positions.data(),
+                                              now_.velocities.data(),
+                                              now_.strains.data(),
+                                              histories_in_use_ ? now_.histories.data() : nullptr,
+                                              now_.drifts.data(),
+                                              now_.rest_volumes.data(),
+                                              neighbour_counts_.data(),
+                                              close_counts_.data(),
+                                              settings_.jacobi ? corrections_.data() : nullptr,
+                                              kernel_,
+                                              settings_.gradient_cutoff,
+                                              record_size_};
+  };
+  if (!drifts_in_use_)
+    ex.for_each_particle(now_.velocities.data(), gradients(std::false_type()));
+  else
+    for (int m = 0; m < static_cast<int>(materials_.size()); ++m)
+      with_law(m, [&](const auto &law, StrainLimit) {
+        constexpr bool non_affine = std::remove_cvref_t<decltype(law)>::resists_zero_energy_modes;
+        ex.for_each_particle_of(m, now_.velocities.data(), gradients(std::bool_constant<non_affine>()));
+      });
   lap(schedule_.gradients, pairs_);
 }
 
@@ -236,10 +252,9 @@ template <class Executor> void Solver<Executor>::measure(const Vec3<float> &grav
   executor_.set(terms, ConstraintTerms::term_count * count_, 0.0f);
   for (int m = 0; m < static_cast<int>(materials_.size()); ++m) {
     if (schedule_.solve[static_cast<std::size_t>(m)] < 0) continue;
-    with_law(m, [&](const auto &law, StrainLimit limit) {
-      using Law = std::remove_cvref_t<decltype(law)>;
-      executor_.for_each_particle_of(m, now_.velocities.data(),
-                                     MeasureConstraint<Law, ScalarMultiplier>{law, limit, h_, up_, terms});
+    with_constraint(m, [&](const auto &law, StrainLimit limit, const auto &multiplier) {
+      using Stage = MeasureConstraint<std::remove_cvref_t<decltype(law)>, std::remove_cvref_t<decltype(multiplier)>>;
+      executor_.for_each_particle_of(m, now_.velocities.data(), Stage{law, limit, h_, multiplier, up_, terms});
     });
   }
   const SumTerms::Value sums = executor_.reduce(count_, SumTerms{terms});

@@ -47,9 +47,16 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
     if (stage < 0) continue;
     with_law(m, [&](const auto &law, StrainLimit limit) {
       using Law = std::remove_cvref_t<decltype(law)>;
-      ex.for_each_particle_of(m, now_.velocities.data(),
-                              UpdateStrain<Law>{law, limit, h_, now_.strains.data(), now_.histories.data(),
-                                                now_.log_volumes.data(), neighbour_counts_.data(), counters_.data() + 1});
+      const auto update = [&](auto non_affine) {
+        ex.for_each_particle_of(m, now_.velocities.data(),
+                                UpdateStrain<Law, non_affine.value>{
+                                    law, limit, h_, now_.strains.data(), now_.histories.data(), now_.log_volumes.data(),
+                                    now_.drifts.data(), drift_stiffness(), neighbour_counts_.data(), counters_.data() + 1});
+      };
+      if (settings_.projected_tensor)
+        update(std::bool_constant<Law::resists_zero_energy_modes>());
+      else
+        update(std::false_type());
     });
     lap(stage, particles());
   }
@@ -81,44 +88,55 @@ template <class Executor> void Solver<Executor>::iterate(std::uint32_t iteration
 }
 
 // For semi-implicit plasticity, matter is elastic inside the loop.
-template <class F> void with_plasticity(bool semi_implicit, const auto &law, StrainLimit limit, F &&f) {
-  if (semi_implicit)
-    f(Elastic{{law.lame}}, limit);
-  else
-    f(law, limit);
+template <class Executor> template <class F> void Solver<Executor>::with_constraint(int material, F &&f) {
+  with_law(material, [&](const auto &law, StrainLimit limit) {
+    using Law = std::remove_cvref_t<decltype(law)>;
+    const auto with_form = [&](const auto &multiplier) {
+      if (settings_.semi_implicit)
+        f(Elastic{{law.lame}}, limit, multiplier);
+      else
+        f(law, limit, multiplier);
+    };
+    if (settings_.projected_tensor)
+      with_form(TensorOf<Law>{drift_stiffness()});
+    else
+      with_form(ScalarMultiplier());
+  });
 }
 
 template <class Executor> void Solver<Executor>::solve_in_turn() {
   for (int pass = 0; pass < executor_.pass_count(); ++pass) {
     const int m = executor_.pass_material(pass);
-    with_law(m, [&](const auto &law_of_material, StrainLimit limit_of_material) {
-      with_plasticity(settings_.semi_implicit, law_of_material, limit_of_material, [&](const auto &law, StrainLimit limit) {
-        using Law = std::remove_cvref_t<decltype(law)>;
-        executor_.for_each_block(pass, now_.velocities.data(), SolveInelastic<Law, ScalarMultiplier>{law, limit, h_});
-      });
+    with_constraint(m, [&](const auto &law, StrainLimit limit, const auto &multiplier) {
+      using Stage = SolveInelastic<std::remove_cvref_t<decltype(law)>, std::remove_cvref_t<decltype(multiplier)>>;
+      executor_.for_each_block(pass, now_.velocities.data(), Stage{law, limit, h_, multiplier});
     });
     lap(schedule_.solve[static_cast<std::size_t>(m)], static_cast<std::uint64_t>(executor_.pass_particles(pass)));
   }
 }
 
 template <class Executor> void Solver<Executor>::solve_at_once() {
-  const JacobiRows rows = {{jacobi_rows_[0].data(), jacobi_rows_[1].data(), jacobi_rows_[2].data()}};
+  JacobiRows rows = {};
+  for (int j = 0; j < 3; ++j) {
+    rows.column[j] = jacobi_rows_[j].data();
+    if (drifts_in_use_) rows.along_drift[j] = jacobi_drift_rows_[j].data();
+  }
   Row *velocities = now_.velocities.data();
   int stage = schedule_.gradients;
   for (int m = 0; m < static_cast<int>(materials_.size()); ++m) {
     if (schedule_.solve[static_cast<std::size_t>(m)] < 0) continue;
     stage = schedule_.solve[static_cast<std::size_t>(m)];
-    with_law(m, [&](const auto &law_of_material, StrainLimit limit_of_material) {
-      with_plasticity(settings_.semi_implicit, law_of_material, limit_of_material, [&](const auto &law, StrainLimit limit) {
-        using Law = std::remove_cvref_t<decltype(law)>;
-        executor_.for_each_particle_of(m, velocities,
-                                       JacobiImpulse<Law, ScalarMultiplier>{law, limit, h_, corrections_.data(), rows});
-      });
+    with_constraint(m, [&](const auto &law, StrainLimit limit, const auto &multiplier) {
+      using Stage = JacobiImpulse<std::remove_cvref_t<decltype(law)>, std::remove_cvref_t<decltype(multiplier)>>;
+      executor_.for_each_particle_of(m, velocities, Stage{law, limit, h_, multiplier, corrections_.data(), rows});
     });
     lap(stage, particles());
   }
   // Every particle writes its own velocity and reads none but its own: the impulses are in the rows.
-  executor_.for_each_particle(velocities, JacobiApply{rows, now_.positions.data(), kernel_});
+  if (drifts_in_use_)
+    executor_.for_each_particle(velocities, JacobiApply<true>{rows, now_.positions.data(), kernel_});
+  else
+    executor_.for_each_particle(velocities, JacobiApply<false>{rows, now_.positions.data(), kernel_});
   lap(stage, particles());
 }
 

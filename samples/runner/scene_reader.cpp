@@ -16,6 +16,8 @@ namespace {
 
 const std::vector<std::pair<std::string_view, std::uint32_t>> solvers = {{"gauss_seidel", LOAM_SOLVER_GAUSS_SEIDEL},
                                                                          {"jacobi", LOAM_SOLVER_JACOBI}};
+const std::vector<std::pair<std::string_view, std::uint32_t>> multipliers = {
+    {"projected_tensor", LOAM_MULTIPLIER_PROJECTED_TENSOR}, {"scalar", LOAM_MULTIPLIER_SCALAR}};
 const std::vector<std::pair<std::string_view, std::uint32_t>> plasticities = {
     {"implicit", LOAM_PLASTICITY_IMPLICIT}, {"semi_implicit", LOAM_PLASTICITY_SEMI_IMPLICIT}};
 const std::vector<std::pair<std::string_view, std::uint32_t>> samplings = {{"poisson_disk", LOAM_SAMPLING_POISSON_DISK},
@@ -87,6 +89,8 @@ private:
     table->read("iterations", def.iterations);
     table->read("solver", def.solver, solvers);
     table->read("plasticity", def.plasticity, plasticities);
+    table->read("multiplier", def.multiplier, multipliers);
+    table->read("zero_energy_stiffness", def.zero_energy_stiffness);
     table->read("velocity_smoothing", def.velocity_smoothing);
     table->read("minimum_distance", def.minimum_distance);
     table->read("gradient_cutoff", def.gradient_cutoff);

@@ -98,6 +98,7 @@ TEST(WorldDefinition, RefusesEveryIntegerOutOfItsRange) {
       {"iterations", &loam_world_def::iterations, {0, 1001, ~0u}, {1, 1000}},
       {"solver", &loam_world_def::solver, {2, ~0u}, {0, 1}},
       {"plasticity", &loam_world_def::plasticity, {2, ~0u}, {0, 1}},
+      {"multiplier", &loam_world_def::multiplier, {2, ~0u}, {0, 1}},
       {"thread_count", &loam_world_def::thread_count, {257, ~0u}, {0, 256}},
       {"instruction_set", &loam_world_def::instruction_set, {5, ~0u}, {LOAM_INSTRUCTION_SET_PORTABLE}},
   };

@@ -20,7 +20,7 @@ using EmulatedSolver = Solver<TileExecutor<emulation::Machine>>;
 enum class Runs { cpu, emulated, emulated_backwards, cuda };
 
 struct Settings {
-  bool jacobi = false;
+  bool jacobi = false, projected_tensor = true;
   std::uint32_t substeps = 8, iterations = 3;
   Vec3<float> gravity{0, -9.81f, 0};
 };
@@ -30,7 +30,8 @@ class Rig {
 public:
   Rig(Runs runs, const scenes::Scene &scene, const Settings &settings, const std::vector<loam_material_def> &materials)
       : count_(scene.count()) {
-    const SolverSettings solver = {scene.spacing, 0.2f, 0.75f, 20.0f, settings.jacobi, false, count_, 0};
+    const SolverSettings solver = {scene.spacing, 0.2f,   0.75f, 20.0f, settings.jacobi, false, settings.projected_tensor,
+                                   1.0f,          count_, 0};
     ExecutionSettings execution = {};
     execution.thread_count = runs == Runs::emulated_backwards ? 2 : 1;
     execution.instruction_set = best_instruction_set();

@@ -13,7 +13,7 @@ namespace loam::test {
 struct Cloud {
   float radius = 0.01f;
   std::vector<Row> positions, velocities; // fourth components: volume, inverse mass
-  std::vector<float> strains, histories, log_volumes, rest_volumes;
+  std::vector<float> strains, histories, drifts, log_volumes, rest_volumes;
   std::vector<std::vector<int>> neighbours;
   std::vector<std::vector<Vec3<float>>> gradients;
   std::vector<int> neighbour_counts, close_counts;
@@ -25,6 +25,7 @@ struct Cloud {
     velocities.push_back({0, 0, 0, inverse_mass});
     strains.insert(strains.end(), 6, 0.0f);
     histories.push_back(0);
+    drifts.insert(drifts.end(), 3, 0.0f);
     log_volumes.push_back(0);
     rest_volumes.push_back(volume);
   }
@@ -108,18 +109,20 @@ struct ScalarTeam {
   void count(int, bool mask, int *counter) const { *counter += mask ? 1 : 0; }
 };
 
-inline void compute_gradients(Cloud &cloud, float cutoff = 0.2f, float *corrections = nullptr) {
+template <bool NonAffine = false> void compute_gradients(Cloud &cloud, float cutoff = 0.2f, float *corrections = nullptr) {
   ScalarTeam team{cloud};
-  const ComputeGradients stage{cloud.positions.data(),
-                               cloud.velocities.data(),
-                               cloud.strains.data(),
-                               cloud.histories.data(),
-                               cloud.rest_volumes.data(),
-                               cloud.neighbour_counts.data(),
-                               cloud.close_counts.data(),
-                               corrections,
-                               SmoothingKernel::make(double(cloud.radius)),
-                               cutoff};
+  const ComputeGradients<NonAffine> stage{cloud.positions.data(),
+                                          cloud.velocities.data(),
+                                          cloud.strains.data(),
+                                          cloud.histories.data(),
+                                          cloud.drifts.data(),
+                                          cloud.rest_volumes.data(),
+                                          cloud.neighbour_counts.data(),
+                                          cloud.close_counts.data(),
+                                          corrections,
+                                          SmoothingKernel::make(double(cloud.radius)),
+                                          cutoff,
+                                          Record::field_count};
   for (int i = 0; i < cloud.size(); ++i) stage(team, i);
 }
 

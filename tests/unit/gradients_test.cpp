@@ -147,14 +147,19 @@ TEST(Gradients, PseudoInverseIsTheInverseWhereTheMatrixIsRegularAndCutsWhatIsNot
   for (int k = 0; k < 500; ++k) {
     const Vector values(random.between(0.25, 2), random.between(0.25, 2), random.between(0.25, 2));
     const Sym3<float> A = test::narrow(random.symmetric(values));
-    EXPECT_LT((test::widen(pseudo_inverse(A, 0.2f)) - test::widen(A).inverse()).norm(), 2e-5);
+    Vec3<float> unknown;
+    EXPECT_LT((test::widen(pseudo_inverse(A, 0.2f, unknown)) - test::widen(A).inverse()).norm(), 2e-5);
+    EXPECT_EQ(length(unknown), 0.0f);
     Vector poor = values;
     poor.x() = random.between(-0.1, 0.19); // rounding can make it negative
     const Matrix B = random.symmetric(poor);
     const Matrix expected = test::apply(B, [](double x) { return x > 0.2 ? 1 / x : 0; });
-    EXPECT_LT((test::widen(pseudo_inverse(test::narrow(B), 0.2f)) - expected).norm(), 5e-5);
+    EXPECT_LT((test::widen(pseudo_inverse(test::narrow(B), 0.2f, unknown)) - expected).norm(), 5e-5);
+    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(B);
+    EXPECT_NEAR(std::fabs(eigen.eigenvectors().col(0).dot(Vector(unknown.x, unknown.y, unknown.z))), 1, 1e-5);
   }
-  EXPECT_EQ(test::widen(pseudo_inverse(zero_symmetric<float>(), 0.2f)).norm(), 0);
+  Vec3<float> unknown;
+  EXPECT_EQ(test::widen(pseudo_inverse(zero_symmetric<float>(), 0.2f, unknown)).norm(), 0);
 }
 
 } // namespace

@@ -327,7 +327,7 @@ TEST(Materials, TheMultiplierMeetsItsLinearisedConstraint) {
     c.substep = 1e-3f;
     float state[1] = {0.01f};
     const ConstraintResponse<float> before = respond(law, strain_limit(2), c.trial, c.H, c.history, c.substep);
-    const Matrix dT = test::widen(ScalarMultiplier::impulse(law, strain_limit(2), c, state));
+    const Matrix dT = test::widen(ScalarMultiplier().visit(law, strain_limit(2), c, state).tensor);
     // dv_b = w_b dT G_b, dv_p = -w_p dT s: the change of C is h A : (sum_b dv_b G_b^T - dv_p s^T)
     const Vector s(20, -30, 10);
     const Matrix change = dT * (test::widen(c.gradient_square) + 600.0 * s * s.transpose());

@@ -100,7 +100,7 @@ TEST_P(VisitOrderOf, VisitsEachOnceAndNeverTwoThatShareAParticle) {
   const HostAllocator allocator;
   Workers workers(2, {});
   VisitOrder order(allocator, width, workers.thread_count());
-  order.reserve(particles.x.size(), materials);
+  order.reserve(particles.x.size(), materials, Record::field_count);
   const std::int64_t steps = order.arrange(workers, particles.table);
   order.make_room();
 

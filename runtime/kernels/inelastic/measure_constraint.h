@@ -14,19 +14,20 @@ template <class Law, class Multiplier> struct MeasureConstraint {
   Law law;
   StrainLimit limit;
   float substep;
+  Multiplier multiplier;
   Vec3<float> up; // unit vector against gravity
   float *terms;   // term_count a particle
 
   template <class Team> LOAM_FN void operator()(Team &team, typename Team::Item p) const {
     using Real = typename Team::Real;
     const Vec4<Real> own = team.velocity(p);
-    const Constraint<Real> c = gather_constraint(team, p, substep, own.xyz());
-    const Real lambda = team.field(p, Record::multiplier), h(substep);
-    const ConstraintResponse<Real> response = respond(law, limit, c.trial, c.H, c.history, substep);
-    const Real residual = response.value + c.inverse_volume / (h * h) * lambda;
-    team.set_own_value(p, terms, ConstraintTerms::term_count, ConstraintTerms::residual_squared, residual * residual);
-    team.set_own_value(p, terms, ConstraintTerms::term_count, ConstraintTerms::value_squared,
-                       response.value * response.value);
+    const Constraint<Real> c = gather_constraint<Multiplier::non_affine>(team, p, substep, own.xyz());
+    Real state[Multiplier::state_count];
+    for (int i = 0; i < Multiplier::state_count; ++i) state[i] = team.field(p, Record::multiplier + i);
+    const Residual<Real> residual = multiplier.residual(law, limit, c, state);
+    const Real h(substep);
+    team.set_own_value(p, terms, ConstraintTerms::term_count, ConstraintTerms::residual_squared, residual.change);
+    team.set_own_value(p, terms, ConstraintTerms::term_count, ConstraintTerms::value_squared, residual.value);
 
     // V0 tau : up up^T, tau from the strain at the start of the substep
     Sym3<Real> S = team.symmetric(p, Record::strain);

@@ -1,27 +1,18 @@
 // The multiplier form of the XPBI paper: one scalar Lagrange multiplier a particle for the constraint C = sqrt(2 psi(F)).
 //
 // A multiplier form is a type with
-//   state_count                       floats a particle that live through a substep
-//   impulse(law, constraint, state)   the 3x3 impulse dT of one visit; the visit then does v_b += w_b dT G_b, v_p -= w_p dT s
-// and is a template argument of the solve stages; a second form, the projected impulse tensor, sits beside this file.
+//   state_count                              floats a particle that live through a substep
+//   non_affine                               whether it resists zero-energy modes
+//   visit(law, limit, constraint, state)     the impulses of one visit
+//   residual(law, limit, constraint, state)  how far the state is from where visits end
+// and is a template argument of the solve stages. The other form, the projected impulse tensor, sits beside this file.
 #pragma once
 
+#include "kernels/inelastic/constraint.h"
+#include "kernels/inelastic/deformation.h"
 #include "kernels/materials/project.h"
-#include "math/tensor_functions.h"
 
 namespace loam {
-
-// What one visit knows of its constraint.
-template <class Real> struct Constraint {
-  Sym3<Real> trial;           // b - I of the trial elastic strain, D b D^T - I
-  Mat3<Real> H;               // D = I + H
-  Sym3<Real> gradient_square; // M
-  Vec3<Real> gradient_sum;    // s
-  Real inverse_mass;          // w_p
-  Real inverse_volume;        // 1 / V0
-  Real history;
-  float substep; // h
-};
 
 // Value and derivative of C at the projected strain: A = dC/dF F^nT = tau D^-T / C, with each principal stress times the ratio of trial to
 // projected stretch where the return mapping moved it.
@@ -29,23 +20,6 @@ template <class Real> struct ConstraintResponse {
   Real value;
   Mat3<Real> derivative;
 };
-
-// D^-T by cofactors; the identity where D is close to inverting the neighbourhood, where its inverse would say nothing.
-template <class T> LOAM_FN Mat3<T> inverse_transpose(const Mat3<T> &H) {
-  const T one(1.0f), zero(0.0f);
-  Mat3<T> D = H;
-  for (int i = 0; i < 3; ++i) D.m[i][i] = D.m[i][i] + one;
-  Mat3<T> cofactor;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
-      const int a = (i + 1) % 3, b = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
-      cofactor.m[i][j] = D.m[a][c] * D.m[b][d] - D.m[a][d] * D.m[b][c];
-    }
-  const T det = D.m[0][0] * cofactor.m[0][0] + (D.m[0][1] * cofactor.m[0][1] + D.m[0][2] * cofactor.m[0][2]);
-  const auto regular = det > T(0.05f);
-  const Mat3<T> identity = {{{one, zero, zero}, {zero, one, zero}, {zero, zero, one}}};
-  return select(regular, (one / select(regular, det, one)) * cofactor, identity);
-}
 
 template <class Law, class Real>
 LOAM_FN ConstraintResponse<Real> respond(const Law &law, StrainLimit limit, Sym3<Real> trial, const Mat3<Real> &H,
@@ -71,16 +45,18 @@ LOAM_FN ConstraintResponse<Real> respond(const Law &law, StrainLimit limit, Sym3
     const Real t = (strain.trace - projected.trace) * third;
     tau = (one + t * (one + half * t * (one + third * t))) * (tau + multiply_commuting(tau, E));
   }
-  return {select(strained, value, zero), full(tau) * inverse_transpose(H)};
+  return {select(strained, value, zero), full(tau) * deformation(H).inverse_transpose};
 }
 
 struct ScalarMultiplier {
+  static constexpr bool non_affine = false;
   static constexpr int state_count = 1;
 
   // Equations 10 and 14 of the paper with the denominator in O(1): sum_b w_b |A G_b|^2 = tr(A M A^T), and the particle's own w_p |A s|^2.
   // (A stands for dC/dF F^nT here.) `state` is the multiplier lambda.
   template <class Law, class Real>
-  LOAM_FN static Mat3<Real> impulse(const Law &law, StrainLimit limit, const Constraint<Real> &c, Real state[state_count]) {
+  LOAM_FN Impulse<Real> visit(const Law &law, StrainLimit limit, const Constraint<Real> &c,
+                              Real (&state)[state_count]) const {
     const ConstraintResponse<Real> response = respond(law, limit, c.trial, c.H, c.history, c.substep);
     const Mat3<Real> &A = response.derivative;
     const Mat3<Real> AM = A * full(c.gradient_square);
@@ -95,7 +71,15 @@ struct ScalarMultiplier {
     Real change = (zero - response.value - compliance * state[0]) / denominator;
     change = select(response.value > zero, change, zero);
     state[0] = state[0] + change;
-    return (change / h) * A;
+    return {(change / h) * A, {}};
+  }
+
+  template <class Law, class Real>
+  LOAM_FN Residual<Real> residual(const Law &law, StrainLimit limit, const Constraint<Real> &c,
+                                  Real (&state)[state_count]) const {
+    const Real value = respond(law, limit, c.trial, c.H, c.history, c.substep).value, h(c.substep);
+    const Real residual = value + c.inverse_volume / (h * h) * state[0];
+    return {residual * residual, value * value};
   }
 };
 

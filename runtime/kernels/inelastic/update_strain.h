@@ -3,28 +3,33 @@
 // The true volume J follows det(I + h grad v) alone: the elastic determinant forgets what the return mapping discards.
 #pragma once
 
-#include "kernels/inelastic/kinematics.h"
-#include "kernels/inelastic/record.h"
+#include "kernels/inelastic/constraint.h"
 #include "kernels/materials/project.h"
 #include "math/tensor_functions.h"
 
 namespace loam {
 
-template <class Law> struct UpdateStrain {
+template <class Law, bool NonAffine> struct UpdateStrain {
   Law law;
   StrainLimit limit;
   float substep;
   float *strains;
   float *histories; // null if the law has none
   float *log_volumes;
+  float *drifts;         // 3 a particle; null without NonAffine
+  float drift_stiffness; // stiffness / r^2, see non_affine.h
   const int *neighbour_counts;
   int *strain_limited; // counter
+
+  static constexpr float greatest_drift = 0.5f; // as a strain
 
   template <class Team> LOAM_FN void operator()(Team &team, typename Team::Item p) const {
     using Real = typename Team::Real;
     const Real zero(0.0f), one(1.0f), third(1.0f / 3.0f);
     const Vec3<Real> s = team.vector(p, Record::gradient_sum);
-    const Mat3<Real> H = velocity_gradient_step(team, p, substep, team.velocity(p).xyz(), s);
+    Mat3<Real> H;
+    NonAffineMotion<Real> motion;
+    gather_motion<NonAffine>(team, p, substep, team.velocity(p).xyz(), s, team.vector(p, Record::unknown), H, motion);
     Sym3<Real> S = advance_strain(team.symmetric(p, Record::strain), H);
 
     // det(I + H) - 1 = tr H + second invariant + det H
@@ -39,10 +44,14 @@ template <class Law> struct UpdateStrain {
     auto limited = zero > zero;
     const HenckyStrain<Real> strain = hencky_strain(S, limit, limited);
     if (any(limited)) team.count(p, limited, strain_limited);
+    Real drift_scale = one, other_squared = zero;
+    if constexpr (NonAffine) other_squared = Real(drift_stiffness) * dot(motion.drift, motion.drift);
+    // Matter that may come apart, with too few neighbours, is loose: its neighbourhood cannot tell a strain.
+    const auto alone = team.own_count(p, neighbour_counts) < Real(3.0f);
     if constexpr (Law::plastic) {
       const Real history = team.field(p, Record::history);
       const HenckyStrain<Real> elastic = {law.elastic_trace(strain.trace, history), strain.deviator};
-      const Projection<Real> mapped = project(law, elastic, zero, history, Flow<Real>{substep, one, one});
+      const Projection<Real> mapped = project(law, elastic, other_squared, history, Flow<Real>{substep, one, one});
       // b - I = (1 + a)(I + E) - I = a I + E + a E with 1 + a = exp(2 tr/3) and I + E = exp(2 dev)
       const Real a = expm1_series(Real(2.0f) * third * mapped.strain.trace);
       const Sym3<Real> E = expm1_traceless(Real(2.0f) * mapped.strain.deviator);
@@ -50,10 +59,20 @@ template <class Law> struct UpdateStrain {
       const Real trace = mapped.strain.trace;
       const auto moved = either(mapped.scale < one, either(trace<strain.trace, trace> strain.trace));
       S = select(either(moved, limited), projected, S);
-      // Granular matter with too few neighbours is loose: its neighbourhood cannot tell a strain.
-      const auto alone = team.own_count(p, neighbour_counts) < Real(3.0f);
+      drift_scale = mapped.scale;
       S = select(alone, zero_symmetric<Real>(), S);
       if constexpr (Law::has_history) team.set_own_value(p, histories, 1, 0, mapped.history);
+    }
+    if constexpr (NonAffine) {
+      // Within half a kernel radius, where the picture of a small displacement ends; and not NaN.
+      const Real strain_squared = maximum(Real(drift_stiffness) * dot(motion.drift, motion.drift), Real(1e-30f));
+      const Real bounded = minimum(drift_scale, square_root(Real(greatest_drift * greatest_drift) / strain_squared));
+      Vec3<Real> drift = bounded * motion.drift;
+      const auto kept = both(opposite(alone), dot(drift, drift) < Real(1e12f));
+      drift = select(kept, drift, Vec3<Real>{zero, zero, zero});
+      team.set_own_value(p, drifts, 3, 0, drift.x);
+      team.set_own_value(p, drifts, 3, 1, drift.y);
+      team.set_own_value(p, drifts, 3, 2, drift.z);
     }
     // Should numbers ever run away, a particle forgets its strain instead of spreading NaN.
     S = select(frobenius_squared(S) < Real(1e12f), S, zero_symmetric<Real>());

@@ -130,6 +130,8 @@ struct StateHash {
     for (int k = 0; k < 8; ++k) h = mix(h, bits(rows[k]));
     for (int k = 0; k < 6; ++k) h = mix(h, bits(particles.strains[6 * static_cast<long>(i) + k]));
     if (particles.histories != nullptr) h = mix(h, bits(particles.histories[i]));
+    if (particles.drifts != nullptr)
+      for (int k = 0; k < 3; ++k) h = mix(h, bits(particles.drifts[3 * static_cast<long>(i) + k]));
     h = mix(h, bits(particles.log_volumes[i]));
     h = mix(h, bits(particles.rest_volumes[i]));
     h = mix(h, particles.ids[i]);

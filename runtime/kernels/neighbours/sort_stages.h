@@ -7,12 +7,14 @@
 
 namespace loam {
 
-// The arrays that make up the particles. `histories` is null where no law has one, `free_distances` where there is no mesh.
+// The arrays that make up the particles. `histories` is null where no law has one, `drifts` where no matter resists zero-energy modes, `free_distances`
+// where there is no mesh.
 struct ParticleArrays {
   Row *positions;  // x, y, z, true volume
   Row *velocities; // x, y, z, inverse mass
   float *strains;  // 6 a particle
   float *histories;
+  float *drifts;       // 3 a particle
   float *log_volumes;  // log of the true volume change
   float *rest_volumes; // V0
   std::uint32_t *ids;
@@ -45,6 +47,8 @@ struct MoveParticles {
     to.velocities[i] = from.velocities[j];
     for (int k = 0; k < 6; ++k) to.strains[6 * static_cast<long>(i) + k] = from.strains[6 * static_cast<long>(j) + k];
     if (to.histories != nullptr) to.histories[i] = from.histories[j];
+    if (to.drifts != nullptr)
+      for (int k = 0; k < 3; ++k) to.drifts[3 * static_cast<long>(i) + k] = from.drifts[3 * static_cast<long>(j) + k];
     to.log_volumes[i] = from.log_volumes[j];
     to.rest_volumes[i] = from.rest_volumes[j];
     to.ids[i] = from.ids[j];
