@@ -25,7 +25,7 @@ constexpr Pose at_origin = {{0, 0, 0}, {0, 0, 0, 1}};
 class Scene {
 public:
   Scene(bool keep, unsigned threads) {
-    const SolverSettings settings = {radius, 0.2f, 0.75f, 20.0f, false, false, 2000, 0, keep};
+    const SolverSettings settings = {radius, 0.2f, 0.75f, 20.0f, false, false, true, 1.0f, 2000, 0, keep};
     ExecutionSettings execution = {};
     execution.thread_count = threads;
     execution.instruction_set = best_instruction_set();

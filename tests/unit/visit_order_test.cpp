@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cpu/visit_order.h"
+#include "kernels/inelastic/record.h"
 #include "kernels/neighbours/sort_stages.h"
 
 namespace loam {
@@ -144,7 +145,7 @@ std::map<int, std::vector<int>> visits_by_block(const SortedParticles &particles
   const HostAllocator allocator;
   Workers workers(threads, {});
   VisitOrder order(allocator, width, threads);
-  order.reserve(particles.x.size(), 1);
+  order.reserve(particles.x.size(), 1, Record::field_count);
   order.arrange(workers, particles.table);
   order.make_room();
   const CpuPairs pairs = order.pairs(nullptr);
@@ -172,7 +173,7 @@ TEST(VisitOrder, GivesEachThreadItsShareOfEveryPassInOnePlace) {
   const HostAllocator allocator;
   Workers workers(2, {});
   VisitOrder order(allocator, width, 2);
-  order.reserve(particles.x.size(), 1);
+  order.reserve(particles.x.size(), 1, Record::field_count);
   order.arrange(workers, particles.table);
   order.make_room();
   const CpuPairs pairs = order.pairs(nullptr);
