@@ -64,7 +64,8 @@ typedef struct loam_world_def {
   float kernel_radius;
 
   /* A step of t seconds is cut into this many substeps of t / substeps. Accuracy and stiffness come from short substeps
-   * first, from iterations second. Matter moving faster than r / substep is slowed down to that. 1 to 10000; default 16. */
+   * first, from iterations second. Matter moving faster than r / substep is slowed down to that, and too stiff for the substep it is softened: see
+   * loam_statistics.stiffness_share. 1 to 10000; default 16. */
   uint32_t substeps;
 
   /* Passes over all constraints in a substep. 1 to 1000; default 5. */
@@ -158,8 +159,9 @@ typedef struct loam_statistics {
 
   double step_seconds; /* wall time of the step */
 
-  /* Of the last iteration: the root of the sum of (C + alpha~ lambda)^2 over the sum of C^2. Small means that the iteration has settled; it does
-   * not mean that the step is solved exactly. 0 where nothing is strained. */
+  /* Of the last iteration. SCALAR: the root of the sum of (C + alpha~ lambda)^2 over the sum of C^2; small means that the iteration has settled, not
+   * that the step is solved exactly. PROJECTED_TENSOR: the root of the sum of squared stresses that one more visit would change, over that of the
+   * stresses; small means that the step is solved. 0 where nothing is strained. */
   double residual;
 
   /* The stress that matter shows over the stress that its weight calls for, from the virial theorem along gravity:
@@ -172,6 +174,11 @@ typedef struct loam_statistics {
   double max_speed;      /* m/s */
   double mean_speed;     /* m/s */
   double momentum[3];    /* kg m/s */
+
+  /* The least share of its Young's modulus that a material acted with in the step: with PROJECTED_TENSOR, elastic waves may cross 2 r an iteration in a
+   * substep, c <= 2 iterations r / substep; stiffer matter is softened to that (its yield stress stays), since an unconverged step would otherwise give back more
+   * energy than it was given. 1: none was. For the full stiffness take shorter substeps or more iterations. */
+  double stiffness_share;
 } loam_statistics;
 
 /* Errors: INVALID_ARGUMENT for null or an unknown struct_size. */

@@ -159,7 +159,17 @@ void check_material(const loam_material_def &def) {
     throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("name is not terminated within its %zu bytes", sizeof def.name));
 }
 
-LawVariant make_law(const loam_material_def &def) {
+double stiffness_share(const loam_material_def &def, double kernel_radius, double substep, std::uint32_t iterations) {
+  const Moduli m = moduli_of(def);
+  const double speed = 2.0 * iterations * kernel_radius / substep;
+  const double most = static_cast<double>(def.density) * speed * speed;
+  return std::fmin(1.0, most / (m.lambda + 2 * m.mu));
+}
+
+LawVariant make_law(const loam_material_def &given, double stiffness_share) {
+  loam_material_def def = given;
+  if (stiffness_share < 1)
+    def.youngs_modulus = static_cast<float>(stiffness_share * static_cast<double>(def.youngs_modulus));
   const Moduli m = moduli_of(def);
   switch (def.law) {
   case LOAM_LAW_ELASTIC:

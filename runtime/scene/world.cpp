@@ -136,6 +136,7 @@ void loam_world::step(float seconds) {
     throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("seconds is %g; over %u substeps that is less than 1e-9 s a substep",
                                                     static_cast<double>(seconds), input_.substeps));
   input_.seconds = seconds;
+  limit_stiffness();
   input_.colliders.clear();
   for (std::size_t i = 0; i < colliders_.size(); ++i)
     if (const Collider *c = colliders_.at_index(i); c != nullptr)
@@ -151,6 +152,23 @@ void loam_world::step(float seconds) {
   }
   for (std::size_t i = 0; i < colliders_.size(); ++i)
     if (Collider *c = colliders_.at_index(i); c != nullptr) c->pose = c->target;
+}
+
+void loam_world::limit_stiffness() {
+  input_.stiffness_share = 1;
+  if (def_.multiplier != LOAM_MULTIPLIER_PROJECTED_TENSOR) return; // the scalar form gives way by itself
+  const double substep = static_cast<double>(input_.seconds) / input_.substeps;
+  bool changed = false;
+  for (std::size_t i = 0; i < materials_.size(); ++i) {
+    Material *m = materials_.at_index(i);
+    if (m == nullptr) continue;
+    const float share =
+        static_cast<float>(stiffness_share(m->def, static_cast<double>(def_.kernel_radius), substep, input_.iterations));
+    changed = changed || share != m->stiffness_share;
+    m->stiffness_share = share;
+    if (m->particles > 0) input_.stiffness_share = std::min(input_.stiffness_share, share);
+  }
+  if (changed) send_materials();
 }
 
 void loam_world::set_gravity(const float gravity[3]) {
@@ -174,7 +192,7 @@ void loam_world::send_materials() {
     if (m == nullptr)
       list.push_back({Elastic{}, "", false});
     else
-      list.push_back({m->law, m->def.name, m->particles > 0});
+      list.push_back({make_law(m->def, static_cast<double>(m->stiffness_share)), m->def.name, m->particles > 0});
   }
   backend_->set_materials(list);
 }
@@ -182,7 +200,7 @@ void loam_world::send_materials() {
 loam_material_id loam_world::create_material(const loam_material_def &def) {
   check_material(def);
   check_unmapped();
-  const loam_material_id id = materials_.add({def, make_law(def), 0});
+  const loam_material_id id = materials_.add({def});
   try {
     send_materials();
   } catch (...) {
@@ -206,7 +224,6 @@ void loam_world::set_material(loam_material_id id, const loam_material_def &def)
                        static_cast<double>(def.density), m.def.name, particles, static_cast<double>(m.def.density)));
   const Material before = m;
   m.def = def;
-  m.law = make_law(def);
   try {
     send_materials();
   } catch (...) {

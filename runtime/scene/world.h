@@ -49,8 +49,8 @@ public:
 private:
   struct Material {
     loam_material_def def;
-    loam::LawVariant law;
     std::uint64_t particles = 0;
+    float stiffness_share = 1; // that the present substep can carry
   };
   struct Collider {
     std::uint32_t kind = LOAM_COLLIDER_PLANE;
@@ -62,6 +62,7 @@ private:
   void check_unmapped() const;
   void check_room(std::uint64_t count) const; // for so many more particles
   void send_materials();
+  void limit_stiffness(); // to what a substep can carry
   void add_particles(loam_material_id material, const char *argument, loam::NewParticles particles, bool pinned);
 
   loam_world_def def_;

@@ -57,6 +57,7 @@ struct StepInput {
   std::uint32_t substeps, iterations;
   Vec3<float> gravity;
   std::vector<ColliderState> colliders;
+  float stiffness_share = 1; // the least of the materials; for the statistics
 };
 
 struct NewParticles {

@@ -34,14 +34,16 @@ public:
     std::visit(
         [&](const auto &law) {
           using Law = std::remove_cvref_t<decltype(law)>;
-          const UpdateStrain<Law> stage{law,
-                                        strain_limit(Law::greatest_strain),
-                                        float(h),
-                                        cloud_.strains.data(),
-                                        cloud_.histories.data(),
-                                        cloud_.log_volumes.data(),
-                                        cloud_.neighbour_counts.data(),
-                                        &limited_};
+          const UpdateStrain<Law, false> stage{law,
+                                               strain_limit(Law::greatest_strain),
+                                               float(h),
+                                               cloud_.strains.data(),
+                                               cloud_.histories.data(),
+                                               cloud_.log_volumes.data(),
+                                               nullptr,
+                                               0.0f,
+                                               cloud_.neighbour_counts.data(),
+                                               &limited_};
           stage(team, centre);
         },
         law_);

@@ -51,7 +51,14 @@ template <bool NonAffine> struct ProjectedTensor {
     const Sym3<Real> M = c.gradient_square;
     const Sym3<Real> N = {M.xx + w * s.x * s.x, M.yy + w * s.y * s.y, M.zz + w * s.z * s.z,
                           M.xy + w * s.x * s.y, M.xz + w * s.x * s.z, M.yz + w * s.y * s.z};
-    const Real an = a * third * trace(N);
+    // Where the substep compresses matter strongly, stress answers more steeply than at rest: by |D^-1|^2.
+    Real steepness = zero;
+    for (int i = 0; i < 9; ++i) {
+      const Real d = D.inverse_transpose.m[i / 3][i % 3];
+      steepness = steepness + d * d;
+    }
+    const Real reach = a * maximum(third * steepness, one);
+    const Real an = reach * third * trace(N);
     const Real deviatoric = one / (one + twice_mu * an), volumetric = one / (one + Real(3.0f) * bulk * an);
     const Real mean = third * (R.m[0][0] + (R.m[1][1] + R.m[2][2]));
     Mat3<Real> P = deviatoric * R;
@@ -70,7 +77,7 @@ template <bool NonAffine> struct ProjectedTensor {
       }
     const Real three(3.0f), mean_PR = three * mean_P * mean, mean_PP = three * mean_P * mean_P;
     const Real along = (PR - mean_PR) * deviator_compliance + mean_PR * volume_compliance;
-    const Real curvature = (PP - mean_PP) * deviator_compliance + mean_PP * volume_compliance + a * PPN;
+    const Real curvature = (PP - mean_PP) * deviator_compliance + mean_PP * volume_compliance + reach * PPN;
     const auto moving = curvature > zero;
     const Real theta = select(moving, along / select(moving, curvature, one), one);
 
