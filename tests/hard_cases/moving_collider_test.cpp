@@ -85,7 +85,7 @@ TEST_P(MovingCollider, APileInAClosedMeshComesToRest) {
   const Mesh glass = meshes::hourglass(0.05f, 0.004f); // a neck under the stand-off: at most single grains squeeze through
   HardCase hard(GetParam());
   hard.step_seconds = 1.0f / 60;
-  hard.steps = hooks::short_run() ? 20 : 300; // 5 s
+  hard.steps = hooks::short_run() ? 20 : 300;                    // 5 s
   if (GetParam() == LOAM_SOLVER_JACOBI) hard.def.iterations = 8; // it needs more of them
   hard.prepare = [&](scenes::World &world) {
     test::add_mesh(world, glass);
