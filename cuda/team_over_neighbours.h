@@ -93,6 +93,9 @@ template <class TileType> struct TeamOverNeighbours {
     tile.store(k.gradient + 2 * line, g.z, k.left);
   }
   LOAM_FN Lane neighbour_count(const Neighbour &k, const int *counts) const { return tile.gather_count(counts, k.index); }
+  LOAM_FN Lane neighbour_lookup(const Neighbour &k, const std::uint32_t *numbers, const float *table) const {
+    return tile.gather_lookup(numbers, table, k.index);
+  }
 
   // of the particle itself
   LOAM_FN Vec4<Real> velocity(int p) const { return own_row(p, d.velocities); }

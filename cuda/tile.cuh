@@ -39,6 +39,10 @@ template <int W> struct Tile {
   }
   __device__ __forceinline__ Lane gather_count(const int *counts, Index k) const { return static_cast<float>(counts[k]); }
 
+  __device__ __forceinline__ Lane gather_lookup(const unsigned *numbers, const float *table, Index k) const {
+    return table[numbers[k]];
+  }
+
   // One thread writes what belongs to the particle.
   __device__ __forceinline__ bool leader() const { return lane == 0; }
   // Waits for the tile's threads, and makes what each has written visible to all.

@@ -97,6 +97,23 @@ LOAM_API loam_status loam_material_set(loam_world *world, loam_material_id mater
 /* Reads a material's definition back. `def->struct_size` is set by the caller. */
 LOAM_API loam_status loam_material_get(const loam_world *world, loam_material_id material, loam_material_def *def);
 
+/* ---------------------------------------------------------------------------------------- how materials meet --- */
+
+enum {
+  /* One continuum where they touch: they mix, and stick to each other as each sticks to itself. The default. */
+  LOAM_MEETING_SHARED = 0,
+  /* Bodies that stay apart: each takes its deformation from its own kind only, and their particles keep a distance of r, with Coulomb friction.
+   * For sand on rubber, a snowball against a figure, a press on dough. */
+  LOAM_MEETING_CONTACT = 1
+};
+
+/* How two materials of a world meet from the next step on, in either order of naming. `friction` is the coefficient of CONTACT, 0 to 100, and ignored otherwise. A
+ * material always shares with itself. Forgotten when either is destroyed.
+ * Errors: INVALID_HANDLE; INVALID_ARGUMENT for the same material twice, an unknown meeting, a friction out of range; IN_USE while buffers are
+ * mapped; OUT_OF_MEMORY. */
+LOAM_API loam_status loam_material_set_meeting(loam_world *world, loam_material_id a, loam_material_id b, uint32_t meeting,
+                                               float friction);
+
 #ifdef __cplusplus
 }
 #endif

@@ -36,3 +36,11 @@ loam_status loam_material_get(const loam_world *world, loam_material_id material
     write_definition(def, "def", def->struct_size, world->material(material), {first_material_size});
   });
 }
+
+loam_status loam_material_set_meeting(loam_world *world, loam_material_id a, loam_material_id b, uint32_t meeting,
+                                      float friction) {
+  return guarded(world, [&] {
+    check_pointer(world, "world");
+    world->set_meeting(a, b, meeting, friction);
+  });
+}

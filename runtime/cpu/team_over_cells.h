@@ -73,6 +73,13 @@ struct TeamOverCells {
     return Pack::load(values);
   }
 
+  template <bool G>
+  LOAM_FN Pack neighbour_lookup(const Neighbour<G> &k, const std::uint32_t *numbers, const float *table) const {
+    alignas(64) float values[W];
+    for (int l = 0; l < W; ++l) values[l] = table[numbers[k.index[l]]];
+    return Pack::load(values);
+  }
+
   // of the item's own particles
   LOAM_FN const int *own(int b) const { return d.ids + static_cast<long>(b) * W; }
   LOAM_FN Vec4<Pack> velocity(int b) const { return load_rows(d.velocities, own(b)); }

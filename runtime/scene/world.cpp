@@ -1,5 +1,6 @@
 #include "scene/world.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 
@@ -194,7 +195,31 @@ void loam_world::send_materials() {
     else
       list.push_back({make_law(m->def, static_cast<double>(m->stiffness_share)), m->def.name, m->particles > 0});
   }
+  for (const Contact &contact : contacts_)
+    for (const auto &[own, other] : {std::pair(contact.a, contact.b), std::pair(contact.b, contact.a)}) {
+      list[own].meetings.resize(list.size(), -1.0f);
+      list[own].meetings[other] = contact.friction;
+    }
   backend_->set_materials(list);
+}
+
+void loam_world::set_meeting(loam_material_id a, loam_material_id b, std::uint32_t meeting, float friction) {
+  const std::size_t first = materials_.index_of(a, "a"), second = materials_.index_of(b, "b");
+  if (first == second)
+    throw Error(LOAM_ERROR_INVALID_ARGUMENT, "a and b are the same material; it always shares with itself");
+  check_choice("meeting", meeting, LOAM_MEETING_CONTACT);
+  if (meeting == LOAM_MEETING_CONTACT) check_range("friction", static_cast<double>(friction), 0, 100);
+  check_unmapped();
+  const std::vector<Contact> before = contacts_;
+  const auto [low, high] = std::minmax(first, second);
+  std::erase_if(contacts_, [low = low, high = high](const Contact &c) { return c.a == low && c.b == high; });
+  if (meeting == LOAM_MEETING_CONTACT) contacts_.push_back({low, high, friction});
+  try {
+    send_materials();
+  } catch (...) {
+    contacts_ = before;
+    throw;
+  }
 }
 
 loam_material_id loam_world::create_material(const loam_material_def &def) {
@@ -237,6 +262,8 @@ void loam_world::destroy_material(loam_material_id id) {
   if (m.particles > 0)
     throw Error(LOAM_ERROR_IN_USE,
                 format("material \"%s\" has %llu particles", m.def.name, static_cast<unsigned long long>(m.particles)));
+  const std::size_t slot = materials_.index_of(id, "material");
+  std::erase_if(contacts_, [slot](const Contact &c) { return c.a == slot || c.b == slot; });
   materials_.remove(id, "material");
   send_materials();
 }

@@ -34,6 +34,7 @@ public:
   loam_material_id create_material(const loam_material_def &def);
   void set_material(loam_material_id id, const loam_material_def &def);
   void destroy_material(loam_material_id id);
+  void set_meeting(loam_material_id a, loam_material_id b, std::uint32_t meeting, float friction);
   const loam_material_def &material(loam_material_id id) const;
 
   loam_collider_id create_collider(const loam_collider_def &def);
@@ -51,6 +52,10 @@ private:
     loam_material_def def;
     std::uint64_t particles = 0;
     float stiffness_share = 1; // that the present substep can carry
+  };
+  struct Contact { // between two materials, by their slots, the lower first
+    std::size_t a, b;
+    float friction;
   };
   struct Collider {
     std::uint32_t kind = LOAM_COLLIDER_PLANE;
@@ -70,6 +75,7 @@ private:
   std::uint32_t backend_kind_ = LOAM_BACKEND_CPU;
   std::uint16_t tag_;
   loam::SlotTable<Material> materials_;
+  std::vector<Contact> contacts_;
   loam::SlotTable<Collider> colliders_;
   std::unique_ptr<loam::Backend> backend_;
   loam::StepInput input_{};

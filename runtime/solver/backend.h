@@ -25,7 +25,8 @@ using LawVariant = VariantOf<Laws>::Type;
 struct SolverMaterial {
   LawVariant law;
   std::string name;
-  bool in_use; // there are particles of it
+  bool in_use;                      // there are particles of it
+  std::vector<float> meetings = {}; // by the other's index, see meetings.h; empty: it shares gradients with all
 };
 
 // What stays for the life of a world.

@@ -93,6 +93,21 @@ private:
   }
   // Calls f(law, limit, multiplier form) with what holds inside the iterations.
   template <class F> void with_constraint(int material, F &&f);
+  Meetings meetings_of(int material) const {
+    const auto m = static_cast<std::size_t>(material);
+    if (!contact_between_materials_ || materials_[m].meetings.empty()) return {};
+    return {now_.materials.data(), meetings_.data() + m * materials_.size()};
+  }
+  // Launches make(meetings) for all particles at once, or material by material where they meet others differently.
+  template <class Make> void for_each_particle_meeting(Make &&make) {
+    if (!contact_between_materials_) {
+      executor_.for_each_particle(now_.velocities.data(), make(Meetings{}));
+      return;
+    }
+    for (int m = 0; m < static_cast<int>(materials_.size()); ++m)
+      if (materials_[static_cast<std::size_t>(m)].in_use)
+        executor_.for_each_particle_of(m, now_.velocities.data(), make(meetings_of(m)));
+  }
   float drift_stiffness() const {
     return settings_.zero_energy_stiffness / (settings_.kernel_radius * settings_.kernel_radius);
   }
@@ -118,6 +133,8 @@ private:
   Array<int> cell_starts_, neighbour_counts_, close_counts_;
   Array<int> counters_; // speed limited, strain limited, contacts
   Array<float> corrections_, densities_;
+  Array<float> meetings_; // material by material
+  bool contact_between_materials_ = false;
   Array<Row> jacobi_rows_[3], jacobi_drift_rows_[3];
   std::vector<Mesh> meshes_;
   std::vector<ColliderView> views_, views_before_; // of this substep and the one before
@@ -144,10 +161,10 @@ Solver<Executor>::Solver(const SolverSettings &settings, const ExecutionSettings
       y_(executor_.template array<float>()), z_(executor_.template array<float>()),
       cell_starts_(executor_.template array<int>()), neighbour_counts_(executor_.template array<int>()),
       close_counts_(executor_.template array<int>()), counters_(executor_.template array<int>()),
-      corrections_(executor_.template array<float>()),
-      densities_(executor_.template array<float>()), jacobi_rows_{executor_.template array<Row>(),
-                                                                  executor_.template array<Row>(),
-                                                                  executor_.template array<Row>()},
+      corrections_(executor_.template array<float>()), densities_(executor_.template array<float>()),
+      meetings_(executor_.template array<float>()), jacobi_rows_{executor_.template array<Row>(),
+                                                                 executor_.template array<Row>(),
+                                                                 executor_.template array<Row>()},
       jacobi_drift_rows_{executor_.template array<Row>(), executor_.template array<Row>(), executor_.template array<Row>()},
       collider_views_(executor_.template array<ColliderView>()), contacts_(executor_.template array<Contact>()) {
   const auto capacity = static_cast<std::size_t>(settings_.particle_capacity);
@@ -220,6 +237,8 @@ template <class Executor> void Solver<Executor>::set_materials(const std::vector
     const int spare = static_cast<int>(rows - spare_row_);
     executor_.set(now_.rest_volumes.data() + spare_row_, spare, 1.0f);
     executor_.set(other_.rest_volumes.data() + spare_row_, spare, 1.0f);
+    executor_.set(now_.materials.data() + spare_row_, spare, 0u);
+    executor_.set(other_.materials.data() + spare_row_, spare, 0u);
     material_capacity_ = capacity;
   }
   if (history && !histories_in_use_) {
@@ -235,6 +254,14 @@ template <class Executor> void Solver<Executor>::set_materials(const std::vector
     executor_.set(now_.drifts.data(), 3 * count_, 0.0f);
     drifts_in_use_ = true;
   }
+  std::vector<float> table;
+  for (const SolverMaterial &material : materials)
+    if (!material.meetings.empty()) table.resize(materials.size() * materials.size(), -1.0f);
+  for (std::size_t m = 0; m < materials.size() && !table.empty(); ++m)
+    std::copy(materials[m].meetings.begin(), materials[m].meetings.end(),
+              table.begin() + static_cast<std::ptrdiff_t>(m * materials.size()));
+  if (!table.empty()) copy_in(meetings_, table);
+  contact_between_materials_ = !table.empty();
   materials_ = materials;
   schedule_is_current_ = false;
 }

@@ -36,7 +36,7 @@ template <class Executor> void Solver<Executor>::compile_schedule(bool colliders
   if (schedule_is_current_ && colliders == schedule_has_colliders_) return;
   SceneContents contents;
   for (const SolverMaterial &material : materials_) contents.materials.push_back({material.name, material.in_use});
-  contents.position_correction = settings_.minimum_distance > 0.0f;
+  contents.position_correction = settings_.minimum_distance > 0.0f || contact_between_materials_;
   contents.velocity_smoothing = settings_.velocity_smoothing > 0.0f;
   contents.colliders = colliders;
   schedule_.compile(contents);
@@ -87,7 +87,8 @@ template <class Executor> void Solver<Executor>::search_neighbours() {
 
   const float r = settings_.kernel_radius, least = settings_.minimum_distance * r;
   // Pairs that can come too close within the substep; a pair's approach is a fraction of r in any motion that is resolved.
-  const float close = schedule_.position_correction >= 0 ? least + 0.5f * r : 0.0f;
+  const float greatest = contact_between_materials_ ? std::max(least, r) : least;
+  const float close = schedule_.position_correction >= 0 ? greatest + 0.5f * r : 0.0f;
   const CandidateTest test = {4.0f * r * r, close * close, settings_.jacobi};
   table_.particle_count = count_;
   table_.material_count = std::max(1, static_cast<int>(materials_.size()));
@@ -126,7 +127,7 @@ template <class Executor> void Solver<Executor>::search_neighbours() {
   ex.fill_neighbours(table_, FillNeighbours{test, neighbour_counts_.data(), close_counts_.data()});
   lap(schedule_.search, pairs_);
 
-  const auto gradients = [&](auto non_affine) {
+  const auto gradients = [&](auto non_affine, const Meetings &meetings) {
     return ComputeGradients<non_affine.value>{now_.positions.data(),
                                               now_.velocities.data(),
                                               now_.strains.data(),
@@ -138,15 +139,16 @@ template <class Executor> void Solver<Executor>::search_neighbours() {
                                               settings_.jacobi ? corrections_.data() : nullptr,
                                               kernel_,
                                               settings_.gradient_cutoff,
-                                              record_size_};
+                                              record_size_,
+                                              meetings};
   };
   if (!drifts_in_use_)
-    ex.for_each_particle(now_.velocities.data(), gradients(std::false_type()));
+    for_each_particle_meeting([&](const Meetings &meetings) { return gradients(std::false_type(), meetings); });
   else
     for (int m = 0; m < static_cast<int>(materials_.size()); ++m)
       with_law(m, [&](const auto &law, StrainLimit) {
         constexpr bool non_affine = std::remove_cvref_t<decltype(law)>::resists_zero_energy_modes;
-        ex.for_each_particle_of(m, now_.velocities.data(), gradients(std::bool_constant<non_affine>()));
+        ex.for_each_particle_of(m, now_.velocities.data(), gradients(std::bool_constant<non_affine>(), meetings_of(m)));
       });
   lap(schedule_.gradients, pairs_);
 }

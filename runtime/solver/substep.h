@@ -26,7 +26,9 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
     // A share of 1 would be a step to the neighbours' mean; more overshoots.
     const float coefficient = std::min(1.0f, settings_.velocity_smoothing * h_);
     Row *smoothed = other_.velocities.data();
-    ex.for_each_particle(now_.velocities.data(), SmoothVelocities{now_.positions.data(), smoothed, kernel_, coefficient});
+    for_each_particle_meeting([&](const Meetings &meetings) {
+      return SmoothVelocities{now_.positions.data(), smoothed, kernel_, coefficient, meetings};
+    });
     now_.velocities.swap(other_.velocities);
     lap(schedule_.velocity_smoothing, particles());
   }
@@ -133,24 +135,35 @@ template <class Executor> void Solver<Executor>::solve_at_once() {
     lap(stage, particles());
   }
   // Every particle writes its own velocity and reads none but its own: the impulses are in the rows.
+  const auto apply = [&](auto non_affine) {
+    for_each_particle_meeting([&](const Meetings &meetings) {
+      return JacobiApply<non_affine.value>{rows, now_.positions.data(), kernel_, meetings};
+    });
+  };
   if (drifts_in_use_)
-    executor_.for_each_particle(velocities, JacobiApply<true>{rows, now_.positions.data(), kernel_});
+    apply(std::true_type());
   else
-    executor_.for_each_particle(velocities, JacobiApply<false>{rows, now_.positions.data(), kernel_});
+    apply(std::false_type());
   lap(stage, particles());
 }
 
 template <class Executor> void Solver<Executor>::correct_positions() {
   const float least = settings_.minimum_distance * settings_.kernel_radius;
   Row *velocities = now_.velocities.data();
+  const auto stage = [&](float share, const Meetings &meetings) {
+    return CorrectPositions{now_.positions.data(), h_, least, settings_.kernel_radius, share, up_, meetings};
+  };
   if (settings_.jacobi) {
     // A particle touches about six others; a third of each pair's violation at a time does not overshoot.
-    const CorrectPositions common = {now_.positions.data(), h_, least, 1.0f / 3.0f, up_};
-    executor_.for_each_particle(velocities, CorrectPositionsAtOnce{common, other_.velocities.data()});
+    for_each_particle_meeting([&](const Meetings &meetings) {
+      return CorrectPositionsAtOnce{stage(1.0f / 3.0f, meetings), other_.velocities.data()};
+    });
     now_.velocities.swap(other_.velocities);
   } else {
-    const CorrectPositionsInTurn stage{{now_.positions.data(), h_, least, 1.0f, up_}};
-    for (int pass = 0; pass < executor_.pass_count(); ++pass) executor_.for_each_block(pass, velocities, stage);
+    for (int pass = 0; pass < executor_.pass_count(); ++pass) {
+      const Meetings meetings = meetings_of(executor_.pass_material(pass));
+      executor_.for_each_block(pass, velocities, CorrectPositionsInTurn{stage(1.0f, meetings)});
+    }
   }
   lap(schedule_.position_correction, particles());
 }

@@ -331,5 +331,27 @@ TEST_F(Materials, AWorldHoldsFourThousandAndNinetySix) {
   EXPECT_EQ(loam_world_step(world(), 1e-3f), LOAM_OK);
 }
 
+TEST_F(ChangingMaterial, MeetingsAreCheckedAndActFromTheNextStepOn) {
+  const loam_material_def rubber = of_law(LOAM_LAW_ELASTIC);
+  loam_material_id other = 0;
+  ASSERT_EQ(loam_material_create(world(), &rubber, &other), LOAM_OK);
+  const auto meet = [&](loam_material_id a, loam_material_id b, std::uint32_t meeting, float friction) {
+    return loam_material_set_meeting(world(), a, b, meeting, friction);
+  };
+  invalid({"a and b", "same"}, [&] { return meet(other, other, LOAM_MEETING_CONTACT, 0.5f); });
+  invalid({"meeting", "2"}, [&] { return meet(other, of_particles(), 2, 0.5f); });
+  for (const float friction : {-0.1f, 101.0f, NAN, INFINITY})
+    invalid({"friction"}, [&] { return meet(other, of_particles(), LOAM_MEETING_CONTACT, friction); });
+  refused(LOAM_ERROR_INVALID_HANDLE, {"a 0x"}, [&] { return meet(0, of_particles(), LOAM_MEETING_CONTACT, 0.5f); });
+  refused(LOAM_ERROR_INVALID_HANDLE, {"b 0x"}, [&] { return meet(other, other + 1, LOAM_MEETING_CONTACT, 0.5f); });
+  EXPECT_EQ(loam_material_set_meeting(nullptr, other, of_particles(), 0, 0), LOAM_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(meet(other, of_particles(), LOAM_MEETING_CONTACT, 0.5f), LOAM_OK);
+  EXPECT_EQ(meet(of_particles(), other, LOAM_MEETING_SHARED, NAN), LOAM_OK); // ignored there
+  EXPECT_EQ(meet(other, of_particles(), LOAM_MEETING_CONTACT, 0.5f), LOAM_OK);
+  world_.step(1e-3f);
+  EXPECT_EQ(loam_material_destroy(world(), other), LOAM_OK); // and the meeting with it
+  world_.step(1e-3f);
+}
+
 } // namespace
 } // namespace loam

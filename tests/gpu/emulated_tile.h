@@ -99,6 +99,11 @@ template <int W> struct Tile {
     for (int l = 0; l < W; ++l) value.lane[l] = static_cast<float>(counts[k.lane[l]]);
     return value;
   }
+  Lane gather_lookup(const std::uint32_t *numbers, const float *table, const Index &k) const {
+    Lane value;
+    for (int l = 0; l < W; ++l) value.lane[l] = table[numbers[k.lane[l]]];
+    return value;
+  }
 
   bool leader() const { return true; }
   void sync() const {}
@@ -141,6 +146,7 @@ template <> struct Tile<1> {
   Vec4<Lane> gather(const Row *rows, Index k) const { return {rows[k].x, rows[k].y, rows[k].z, rows[k].w}; }
   void scatter(Row *rows, Index k, const Vec4<Lane> &v, int) const { rows[k] = {v.x, v.y, v.z, v.w}; }
   Lane gather_count(const int *counts, Index k) const { return static_cast<float>(counts[k]); }
+  Lane gather_lookup(const std::uint32_t *numbers, const float *table, Index k) const { return table[numbers[k]]; }
   bool leader() const { return true; }
   void sync() const {}
   template <int N> void sum(float (&to)[N], const Lane (&from)[N]) const {

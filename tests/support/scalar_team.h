@@ -79,6 +79,9 @@ struct ScalarTeam {
   Vec3<float> gradient(const Neighbour &k) const { return cloud.gradients[std::size_t(k.item)][k.place]; }
   void set_gradient(const Neighbour &k, const Vec3<float> &g) { cloud.gradients[std::size_t(k.item)][k.place] = g; }
   float neighbour_count(const Neighbour &k, const int *counts) const { return float(counts[id(k)]); }
+  float neighbour_lookup(const Neighbour &k, const std::uint32_t *numbers, const float *table) const {
+    return table[numbers[id(k)]];
+  }
 
   Vec4<float> velocity(int p) const { return vector4(cloud.velocities[std::size_t(p)]); }
   void set_velocity(int p, const Vec4<float> &v) { cloud.velocities[std::size_t(p)] = row(v); }
@@ -122,7 +125,8 @@ template <bool NonAffine = false> void compute_gradients(Cloud &cloud, float cut
                                           corrections,
                                           SmoothingKernel::make(double(cloud.radius)),
                                           cutoff,
-                                          Record::field_count};
+                                          Record::field_count,
+                                          {}};
   for (int i = 0; i < cloud.size(); ++i) stage(team, i);
 }
 

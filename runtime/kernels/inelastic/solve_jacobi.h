@@ -10,6 +10,7 @@
 #pragma once
 
 #include "kernels/inelastic/solve_inelastic.h"
+#include "kernels/neighbours/meetings.h"
 #include "kernels/neighbours/smoothing_kernel.h"
 
 namespace loam {
@@ -56,6 +57,7 @@ template <bool NonAffine> struct JacobiApply {
   JacobiRows rows;
   const Row *positions; // fourth component: volume
   SmoothingKernel kernel;
+  Meetings meetings;
 
   template <class Team> LOAM_FN void operator()(Team &team, typename Team::Item p) const {
     using Lane = typename Team::Lane;
@@ -66,7 +68,8 @@ template <bool NonAffine> struct JacobiApply {
     const Lane volume = team.spread(x.w);
     for (auto k : team.unweighted_neighbours(p)) {
       const Vec3<Lane> d = center - team.neighbour_row(k, positions).xyz();
-      const Vec3<Lane> g = kernel.gradient_factor(square_root(dot(d, d))) * d;
+      Vec3<Lane> g = kernel.gradient_factor(square_root(dot(d, d))) * d;
+      if (meetings.any()) g = meetings.shared(team, k) * g;
       const Vec3<Lane> a = team.neighbour_row(k, rows.column[0]).xyz(), b = team.neighbour_row(k, rows.column[1]).xyz(),
                        c = team.neighbour_row(k, rows.column[2]).xyz();
       sum = sum + ((g.x * a) + ((g.y * b) + (g.z * c)));

@@ -2,9 +2,12 @@
 //
 // It acts on the velocity, inside the solve loop: shifting positions afterwards would let F lie about the shape. Each close pair is owned by one of its
 // ends and stands first in the owner's list. A visit takes the owner's pairs in turn, so it is sequential for a team of any kind.
+//
+// Particles of materials that meet by contact (meetings.h) keep `contact_distance` instead, with Coulomb friction on what each visit pushes them apart.
 #pragma once
 
 #include "kernels/inelastic/record.h"
+#include "kernels/neighbours/meetings.h"
 #include "math/matrix.h"
 
 namespace loam {
@@ -18,20 +21,27 @@ LOAM_FN Vec3<float> fallback_direction(int turn) {
 struct CorrectPositions {
   const Row *positions;
   float substep;
-  float least_distance;
+  float least_distance, contact_distance;
   float share; // of the violation that one visit removes: 1 in turn, less for all at once
   Vec3<float> up;
+  Meetings meetings;
 
-  // Most pairs are far enough apart: then there is nothing to do, and nothing to write.
-  template <class T> LOAM_FN auto violated(Vec3<T> d, T turn, T close) const {
-    return both(dot(d, d) < T(least_distance * least_distance), turn < close);
+  // The distance that a pair keeps; `friction` is negative where gradients are shared.
+  template <class T> LOAM_FN T kept_distance(T friction) const {
+    return select(friction < T(0.0f), T(least_distance), T(contact_distance));
   }
 
-  // One-sided: the pair's velocity change along its direction, and its moment.
-  template <class T> LOAM_FN Vec3<T> velocity_change(Vec3<T> d, T weight, T active, int turn, T &moment) const {
-    const T zero(0.0f), one(1.0f), h(substep), least(least_distance);
+  // Most pairs are far enough apart: then there is nothing to do, and nothing to write.
+  template <class T> LOAM_FN auto violated(Vec3<T> d, T least, T turn, T close) const {
+    return both(dot(d, d) < least * least, turn < close);
+  }
+
+  // One-sided: the pair's impulse along its direction and, in contact, against its sliding at `velocity`; and its moment.
+  template <class T>
+  LOAM_FN Vec3<T> impulse(Vec3<T> d, Vec3<T> velocity, T least, T friction, T weight, T active, int turn, T &moment) const {
+    const T zero(0.0f), one(1.0f), h(substep);
     const T squared = dot(d, d);
-    const auto coincident = squared < T(1e-10f * least_distance * least_distance);
+    const auto coincident = squared < T(1e-10f) * least * least;
     const Vec3<float> f = fallback_direction(turn);
     const T distance = square_root(squared);
     const T reciprocal = one / select(coincident, one, distance);
@@ -41,7 +51,15 @@ struct CorrectPositions {
     const T change = select(movable, T(share) * violation / (h * select(movable, weight, one)), zero);
     const T along = n.x * T(up.x) + (n.y * T(up.y) + n.z * T(up.z));
     moment = moment + change * along * along * distance;
-    return change * n;
+    Vec3<T> result = change * n;
+    if (meetings.any()) {
+      const Vec3<T> sliding = velocity - dot(n, velocity) * n;
+      const T speed = square_root(dot(sliding, sliding));
+      const auto slides = both(friction > zero, speed > T(1e-12f));
+      const T most = minimum(friction * change, select(movable, speed / select(movable, weight, one), zero));
+      result = result - select(slides, most / select(slides, speed, one), zero) * sliding;
+    }
+    return result;
   }
 };
 
@@ -58,10 +76,14 @@ struct CorrectPositionsInTurn : CorrectPositions {
     for (auto k : team.close_neighbours(p)) {
       const Vec4<Real> other = team.neighbour_velocity(k);
       const Vec3<Real> d = (x - team.neighbour_row(k, positions).xyz()) + h * (v - other.xyz());
-      const auto too_near = violated(d, Real(static_cast<float>(turn)), close);
+      Real friction(-1.0f);
+      if (meetings.any()) friction = meetings.friction(team, k);
+      const Real least = kept_distance(friction);
+      const auto too_near = violated(d, least, Real(static_cast<float>(turn)), close);
       ++turn;
       if (!any(too_near)) continue;
-      const Vec3<Real> j = velocity_change(d, own.w + other.w, select(too_near, one, zero), turn, moment);
+      const Vec3<Real> j =
+          impulse(d, v - other.xyz(), least, friction, own.w + other.w, select(too_near, one, zero), turn, moment);
       const Vec3<Real> u = other.xyz() - other.w * j;
       team.set_neighbour_velocity(k, {u.x, u.y, u.z, other.w});
       v = v + own.w * j;
@@ -86,10 +108,14 @@ struct CorrectPositionsAtOnce : CorrectPositions {
     for (auto k : team.close_neighbours(p)) {
       const Vec4<Real> other = team.neighbour_velocity(k);
       const Vec3<Real> d = (x - team.neighbour_row(k, positions).xyz()) + h * (own.xyz() - other.xyz());
-      const auto too_near = violated(d, Real(static_cast<float>(turn)), close);
+      Real friction(-1.0f);
+      if (meetings.any()) friction = meetings.friction(team, k);
+      const Real least = kept_distance(friction);
+      const auto too_near = violated(d, least, Real(static_cast<float>(turn)), close);
       ++turn;
       if (!any(too_near)) continue;
-      sum = sum + velocity_change(d, own.w + other.w, select(too_near, one, zero), turn, moment);
+      sum = sum +
+            impulse(d, own.xyz() - other.xyz(), least, friction, own.w + other.w, select(too_near, one, zero), turn, moment);
     }
     const Vec3<Real> v = own.xyz() + own.w * sum;
     team.set_own_row(p, corrected, {v.x, v.y, v.z, own.w});

@@ -4,6 +4,7 @@
 // reduced mass, m_p dv_p = - m_b dv_b = c V W 2 m_p m_b / (m_p + m_b) (v_b - v_p).
 #pragma once
 
+#include "kernels/neighbours/meetings.h"
 #include "kernels/neighbours/smoothing_kernel.h"
 #include "math/matrix.h"
 
@@ -14,6 +15,7 @@ struct SmoothVelocities {
   Row *smoothed;
   SmoothingKernel kernel;
   float coefficient;
+  Meetings meetings;
 
   template <class Team> LOAM_FN void operator()(Team &team, typename Team::Item p) const {
     using Lane = typename Team::Lane;
@@ -27,8 +29,9 @@ struct SmoothVelocities {
       const Vec3<Lane> d = other.xyz() - center;
       const Lane weights = own_w + u.w;
       const auto movable = weights > zero;
-      const Lane share = select(movable, own_w / select(movable, weights, one), zero);             // m_b / (m_p + m_b)
-      const Lane weight = kernel.value(square_root(dot(d, d))) * ((own_volume + other.w) * share); // mean volume times 2
+      const Lane share = select(movable, own_w / select(movable, weights, one), zero);       // m_b / (m_p + m_b)
+      Lane weight = kernel.value(square_root(dot(d, d))) * ((own_volume + other.w) * share); // mean volume times 2
+      if (meetings.any()) weight = weight * meetings.shared(team, k);
       sum = sum + weight * (u.xyz() - v);
     }
     const Vec3<Real> u = own.xyz() + Real(coefficient) * team.sum(sum);

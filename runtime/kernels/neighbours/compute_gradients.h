@@ -8,6 +8,7 @@
 #pragma once
 
 #include "kernels/inelastic/record.h"
+#include "kernels/neighbours/meetings.h"
 #include "kernels/neighbours/smoothing_kernel.h"
 #include "math/tensor_functions.h"
 
@@ -56,6 +57,7 @@ template <bool NonAffine> struct ComputeGradients {
   SmoothingKernel kernel;
   float cutoff;
   int record_size; // fields of a record in this world
+  Meetings meetings;
 
   template <class Team> LOAM_FN void operator()(Team &team, typename Team::Item p) const {
     using Lane = typename Team::Lane;
@@ -66,7 +68,8 @@ template <bool NonAffine> struct ComputeGradients {
     for (auto k : team.neighbours(p)) {
       const Vec4<Lane> x = team.neighbour_row(k, positions);
       const Vec3<Lane> d = x.xyz() - center;
-      const Lane factor = kernel.gradient_factor(square_root(dot(d, d))) * x.w;
+      Lane factor = kernel.gradient_factor(square_root(dot(d, d))) * x.w;
+      if (meetings.any()) factor = factor * meetings.shared(team, k);
       const Vec3<Lane> g = factor * d;
       team.set_gradient(k, g);
       const Lane w = neighbour_weight(team, k);
