@@ -40,7 +40,7 @@ Renderer::Renderer(const Scene &scene, const Particles &start)
   for (std::size_t i = 0; i < start.count(); ++i) {
     const float height = scene.emitters[start.emitters[i]].band_height;
     if (height > 0)
-      in_band_[start.ids[i]] = static_cast<int>(std::floor(dot(start.positions[i], environment_.up()) / height)) & 1;
+      in_band_[start.ids[i]] = std::fmod(std::floor(dot(start.positions[i], environment_.up()) / height), 2.0f) != 0;
   }
 }
 
@@ -168,15 +168,16 @@ Vector3 Renderer::shade(const Ray &ray, const Hit &hit, std::size_t pixel, float
 Vector3 Renderer::shade_ground(const Hit &hit, Vector3 background) const {
   const Ground &ground = *rays_.ground();
   const float size = length(rays_.high() - rays_.low());
-  Vector3 colour = ground.colour;
-  if (ground.appearance == Appearance::wood)
-    colour = plank_colour(ground.colour, hit.position - ground.point, Frame(ground.normal), 0.09f * size);
-  if (ground.appearance == Appearance::tiles)
-    colour = tile_colour(ground.colour, hit.position - ground.point, Frame(ground.normal), 0.16f * size);
-  const Vector3 lit = (1 / pi) * (colour * ground_light_->irradiance(hit.position));
   // The ground runs into the backdrop without a horizon.
   const float away = std::fmax(0.0f, length(hit.position - camera_.target()) / size - 0.5f);
-  return mix(background, lit, std::exp(-1.3f * away * away));
+  const float share = std::exp(-1.3f * away * away);
+  if (!(share > 1e-3f)) return background;
+  const Vector3 from = hit.position - ground.point;
+  Vector3 colour = ground.colour;
+  if (ground.appearance == Appearance::wood) colour = plank_colour(colour, from, Frame(ground.normal), 0.09f * size);
+  if (ground.appearance == Appearance::tiles) colour = tile_colour(colour, from, Frame(ground.normal), 0.16f * size);
+  const Vector3 lit = (1 / pi) * (colour * ground_light_->irradiance(hit.position));
+  return mix(background, lit, share);
 }
 
 GrainLight Renderer::grain_light(std::uint32_t index) {
