@@ -6,12 +6,12 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 # Scene, frame, width of the picture in pixels, and the shares of it to cut away: left, top, right, bottom.
 gallery=(
-  "noodles 80 600 0 0 0 0"
-  "candy 16 760 0 0 0 0"
-  "flow_trio 30 900 0 .2 0 0"
-  "falling_monsters 30 860 0 0 0 0"
-  "snow_dive 30 700 0 0 0 0"
-  "colliding_blocks 15 800 0 0 0 0"
+  "noodles 80 560 .1 .05 .1 0"
+  "candy 15 700 0 0 0 0"
+  "flow_trio 30 860 0 .25 0 .05"
+  "falling_monsters 20 760 .1 .25 0 .1"
+  "snow_dive 30 620 .08 .2 .08 .05"
+  "colliding_blocks 15 660 .1 0 .05 .08"
   "notched_block 20 760 0 0 0 0"
   "friction_row 90 900 0 0 0 0"
 )

@@ -1,4 +1,4 @@
-// Reads scene files (TOML). samples/scenes/hourglass/scene.toml shows every table.
+// Reads scene files (TOML). samples/scenes/hourglass/scene.toml shows every table, samples/scenes/noodles colliders that move.
 #pragma once
 
 #include <filesystem>
