@@ -12,8 +12,8 @@ gallery=(
   "falling_monsters 20 760 .1 .25 0 .1"
   "snow_dive 30 620 .08 .2 .08 .05"
   "colliding_blocks 15 660 .1 0 .05 .08"
-  "notched_block 20 760 0 0 0 0"
-  "friction_row 90 900 0 0 0 0"
+  "notched_block 20 620 .15 .25 .15 .12"
+  "friction_row 60 900 0 .15 0 .1"
 )
 
 threads=0
