@@ -11,7 +11,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import mesh_tools  # noqa: E402
 
-RADIUS, RIM, HUB, SPOKE = 0.09, 0.020, 0.024, 0.015  # outer radius, the rim's thickness, the hub's radius, a spoke's width
+RADIUS, RIM, HUB, SPOKE = 0.09, 0.021, 0.025, 0.018  # outer radius, the rim's thickness, the hub's radius, a spoke's width
 WIDTH = 0.044
 SPOKES = 6
 BLEND = 0.006
