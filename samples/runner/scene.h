@@ -101,6 +101,13 @@ struct SceneLight {
   float exposure = 1;
 };
 
+// Materials of which any two meet as bodies that stay apart.
+struct SceneContact {
+  Place place;
+  std::vector<std::string> materials; // two or more
+  float friction = 0.3f;
+};
+
 struct Scene {
   std::filesystem::path path;
   std::string title;
@@ -109,6 +116,7 @@ struct Scene {
   double frame_rate = 60;
   std::uint64_t frames = 120;
   std::vector<SceneMaterial> materials;
+  std::vector<SceneContact> contacts; // of pairs that are named twice, the last holds
   std::vector<SceneEmitter> emitters;
   std::vector<SceneCollider> colliders;
   std::vector<SceneDecoration> decorations;

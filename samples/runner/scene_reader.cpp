@@ -62,6 +62,7 @@ public:
     read_world(root);
     read_time(root);
     for (TomlTable &table : root.tables("materials")) read_material(table);
+    for (TomlTable &table : root.tables("contacts")) read_contact(table);
     for (TomlTable &table : root.tables("emitters")) read_emitter(table);
     for (TomlTable &table : root.tables("colliders")) read_collider(table);
     for (TomlTable &table : root.tables("decorations")) read_decoration(table);
@@ -115,6 +116,25 @@ private:
     for (const SceneMaterial &other : scene_.materials)
       if (other.name == material.name) table.fail("name", fmt::format("there is a material \"{}\" already", material.name));
     scene_.materials.push_back(material);
+  }
+
+  void read_contact(TomlTable &table) {
+    SceneContact contact;
+    contact.place = table.place();
+    table.require("materials");
+    table.read("materials", contact.materials);
+    if (contact.materials.size() < 2) table.fail("materials", "a contact is between two materials or more");
+    for (std::size_t i = 0; i < contact.materials.size(); ++i) {
+      const std::string &name = contact.materials[i];
+      const bool known = std::any_of(scene_.materials.begin(), scene_.materials.end(),
+                                     [&](const SceneMaterial &each) { return each.name == name; });
+      if (!known) table.fail("materials", fmt::format("no material is named \"{}\"", name));
+      if (std::find(contact.materials.begin(), contact.materials.begin() + i, name) != contact.materials.begin() + i)
+        table.fail("materials", fmt::format("\"{}\" is named twice", name));
+    }
+    table.read("friction", contact.friction);
+    table.finish();
+    scene_.contacts.push_back(contact);
   }
 
   void read_emitter(TomlTable &table) {

@@ -92,6 +92,18 @@ bool Simulation::build(std::uint64_t particle_capacity) {
     material_ids_.push_back(static_cast<std::uint32_t>(id));
   }
 
+  const auto id_of = [&](const std::string &name) {
+    const auto material = std::find_if(scene_->materials.begin(), scene_->materials.end(),
+                                       [&](const SceneMaterial &candidate) { return candidate.name == name; });
+    return materials[static_cast<std::size_t>(material - scene_->materials.begin())];
+  };
+  for (const SceneContact &contact : scene_->contacts)
+    for (std::size_t i = 0; i < contact.materials.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        check(loam_material_set_meeting(world, id_of(contact.materials[i]), id_of(contact.materials[j]),
+                                        LOAM_MEETING_CONTACT, contact.friction),
+              contact.place);
+
   for (const SceneCollider &collider : scene_->colliders) {
     loam_collider_def def{};
     check(loam_collider_def_default(&def, sizeof def), collider.place);
@@ -107,9 +119,7 @@ bool Simulation::build(std::uint64_t particle_capacity) {
 
   for (const SceneEmitter &emitter : scene_->emitters) {
     loam_fill_def def = emitter.def;
-    const auto material = std::find_if(scene_->materials.begin(), scene_->materials.end(),
-                                       [&](const SceneMaterial &candidate) { return candidate.name == emitter.material; });
-    def.material = materials[static_cast<std::size_t>(material - scene_->materials.begin())];
+    def.material = id_of(emitter.material);
     def.region = describe(emitter.region, *scene_);
     def.cut = describe(emitter.cut, *scene_);
     std::uint64_t count = 0;

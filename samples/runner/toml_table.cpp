@@ -127,6 +127,15 @@ void TomlTable::read(std::string_view key, Vector3 &value) {
     value[axis] = static_cast<float>(number(*array->get(static_cast<std::size_t>(axis)), key));
 }
 
+void TomlTable::read(std::string_view key, std::vector<std::string> &value) {
+  const toml::node *node = find(key);
+  if (node == nullptr) return;
+  const toml::array *array = node->as_array();
+  if (array == nullptr) fail(key, fmt::format("expected a list of strings, found a value of type {}", type_name(*node)));
+  value.clear();
+  for (const toml::node &each : *array) value.push_back(text(each, key));
+}
+
 std::optional<TomlTable> TomlTable::table(std::string_view key) {
   const toml::node *node = find(key);
   if (node == nullptr) return std::nullopt;

@@ -30,6 +30,7 @@ public:
   void read(std::string_view key, int &value);
   void read(std::string_view key, std::string &value);
   void read(std::string_view key, Vector3 &value);
+  void read(std::string_view key, std::vector<std::string> &value);
   // The key's text must be one of the choices' names.
   template <class T> void read(std::string_view key, T &value, const std::vector<std::pair<std::string_view, T>> &choices);
 

@@ -240,4 +240,21 @@ TEST(RunnerSceneReader, RefusesTwoAnswersToOneQuestionAndImpossibleOnes) {
                   {"scene.toml:8:", "materials[0].film"});
 }
 
+TEST(RunnerSceneReader, ReadsContactsAndRefusesThoseOfNobody) {
+  const std::string two = minimal + "[[materials]]\nname = \"rubber\"\nlaw = \"elastic\"\n" // line 12
+                                    "[[contacts]]\n"                                        // line 15
+                                    "materials = [\"sand\", \"rubber\"]\nfriction = 0.4\n"; // line 16
+  const TemporaryFolder folder;
+  const runner::Scene scene = runner::read_scene(folder.write("scene.toml", two));
+  ASSERT_EQ(scene.contacts.size(), 1u);
+  EXPECT_EQ(scene.contacts[0].materials[1], "rubber");
+  EXPECT_FLOAT_EQ(scene.contacts[0].friction, 0.4f);
+  expect_mentions(scene_error(replaced(two, "\"sand\", \"rubber\"]", "\"sand\", \"ruber\"]")),
+                  {"scene.toml:16:", "contacts[0].materials", "ruber"});
+  expect_mentions(scene_error(replaced(two, ", \"rubber\"]", "]")), {"scene.toml:16:", "two materials"});
+  expect_mentions(scene_error(replaced(two, ", \"rubber\"]", ", \"sand\"]")), {"scene.toml:16:", "twice"});
+  expect_mentions(scene_error(replaced(two, ", \"rubber\"]", ", 3]")), {"scene.toml:16:", "string"});
+  expect_mentions(scene_error(replaced(two, "friction = 0.4", "frction = 0.4")), {"scene.toml:17:", "unknown key"});
+}
+
 } // namespace
