@@ -24,11 +24,13 @@ void RunStatistics::add_stages(const std::vector<loam_stage> &frame) {
 std::string make_statistics_json(const Scene &scene, const RunStatistics &run) {
   using Json = nlohmann::ordered_json;
   const loam_statistics last = run.frames.empty() ? loam_statistics{} : run.frames.back().statistics;
-  std::uint64_t pair_visits = 0, speed_limited = 0, outside_peak = 0;
-  double peak_speed = 0;
+  std::uint64_t pair_visits = 0, speed_limited = 0, strain_limited = 0, outside_peak = 0;
+  double peak_speed = 0, stiffness_share = 1;
   for (const FrameRecord &frame : run.frames) {
     pair_visits += frame.statistics.pair_visits;
     speed_limited += frame.statistics.speed_limited;
+    strain_limited += frame.statistics.strain_limited;
+    stiffness_share = std::min(stiffness_share, frame.statistics.stiffness_share);
     peak_speed = std::max(peak_speed, frame.statistics.max_speed);
     outside_peak = std::max(outside_peak, frame.outside);
   }
@@ -69,6 +71,8 @@ std::string make_statistics_json(const Scene &scene, const RunStatistics &run) {
   json["mean_speed"] = last.mean_speed;
   json["peak_speed"] = peak_speed;
   json["speed_limited"] = speed_limited;
+  json["strain_limited"] = strain_limited;
+  json["least_stiffness_share"] = stiffness_share;
   json["contacts"] = last.contacts;
   json["kinetic_energy"] = last.kinetic_energy;
   json["virial"] = last.virial;

@@ -90,6 +90,8 @@ TEST(RunnerStatistics, WritesARowForEachFrameAndTheHashInHexadecimal) {
     record.frame = frame;
     record.outside = frame;
     record.statistics.pair_visits = 100;
+    record.statistics.strain_limited = 2;
+    record.statistics.stiffness_share = frame == 2 ? 0.5 : 1;
     run.frames.push_back(record);
   }
   run.step_seconds = 2;
@@ -99,6 +101,8 @@ TEST(RunnerStatistics, WritesARowForEachFrameAndTheHashInHexadecimal) {
   EXPECT_NE(json.find("\"state_hash\": \"0000000000000abc\""), std::string::npos) << json;
   EXPECT_NE(json.find("\"pair_visits\": 300"), std::string::npos) << json;
   EXPECT_NE(json.find("\"pair_visits_per_second\": 150.0"), std::string::npos) << json;
+  EXPECT_NE(json.find("\"strain_limited\": 6"), std::string::npos) << json;
+  EXPECT_NE(json.find("\"least_stiffness_share\": 0.5"), std::string::npos) << "the softest frame" << json;
   EXPECT_NE(json.find("\"outside_colliders\": 3"), std::string::npos) << json;
 }
 
