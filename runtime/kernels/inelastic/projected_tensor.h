@@ -6,11 +6,11 @@
 // sigma = -T / (h V0). A visit
 //
 //   1. takes the stress of the trial strain as if matter were elastic, R = tau D^-T - sigma,
-//   2. goes as far towards it as the neighbours' inertia allows: P = dev R / (1 + 2 mu a n) + vol R / (1 + 3 K a n), a = h^2 V0, n = tr N / 3, where
-//      N = M + w_p s s^T says how an impulse moves the velocity gradient; and theta P with theta the minimiser along P of the quadratic model,
-//      theta = <P, S R> / (<P, S P> + a <P, P N>),  S the elastic compliance,
-//   3. maps the strain that belongs to the result, S sym((sigma + theta P) D^T), onto the yield surface: a projected Gauss-Seidel step. Plastic strain meets only the
-//      share theta / (1 + 2 mu a n) of the moduli, since the rest of the step moved the neighbours; rate-dependent laws are told (Flow).
+//   2. goes as far towards it as the neighbours' inertia allows. N = M + w_p s s^T says how an impulse moves the velocity gradient, and a = h^2 V0. The mean part takes
+//      the step vol R / (1 + 3 K a tr N / 3), which is exact; the deviator dev R / (1 + 2 mu a n), less what the first has done to it, with n a bound on the
+//      eigenvalues of N, tr N / 3 + sqrt(2/3) |dev N|: no impulse overshoots, so an iteration lowers the energy of the step, also where step 3 bends it,
+//   3. maps the strain that belongs to the result, S sym(sigma D^T) with S the elastic compliance, onto the yield surface: a projected Gauss-Seidel step. Plastic strain
+//      meets only the share 1 / (1 + 2 mu a n) of the moduli, since the rest of the step moved the neighbours; rate-dependent laws are told (Flow).
 //
 // Where zero-energy modes are resisted, the drift (non_affine.h) is treated alike: one more spring of stiffness k = 2 mu V0 stiffness / r^2, whose impulse
 // -h k y along n_p stands for a drift y.
@@ -22,6 +22,27 @@
 
 namespace loam {
 
+// theta = <P, S R> / (<P, S P> + reach <P, P N>), with S X = dev X deviator_compliance + vol X volume_compliance; 1 where P vanishes.
+template <class T>
+LOAM_FN T best_along(const Mat3<T> &P, const Mat3<T> &R, const Mat3<T> &N, T deviator_compliance, T volume_compliance,
+                     T reach) {
+  const T zero(0.0f), one(1.0f), third(1.0f / 3.0f);
+  const Mat3<T> PN = P * N;
+  T PR = zero, PP = zero, PPN = zero;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      PR = PR + P.m[i][j] * R.m[i][j];
+      PP = PP + P.m[i][j] * P.m[i][j];
+      PPN = PPN + P.m[i][j] * PN.m[i][j];
+    }
+  const T trace_P = P.m[0][0] + (P.m[1][1] + P.m[2][2]), trace_R = R.m[0][0] + (R.m[1][1] + R.m[2][2]);
+  const T mean_PR = third * trace_P * trace_R, mean_PP = third * trace_P * trace_P;
+  const T along = (PR - mean_PR) * deviator_compliance + mean_PR * volume_compliance;
+  const T curvature = (PP - mean_PP) * deviator_compliance + mean_PP * volume_compliance + reach * PPN;
+  const auto moving = curvature > zero;
+  return select(moving, along / select(moving, curvature, one), one);
+}
+
 template <bool NonAffine> struct ProjectedTensor {
   static constexpr bool non_affine = NonAffine;
   static constexpr int state_count = NonAffine ? 12 : 9;
@@ -31,7 +52,7 @@ template <bool NonAffine> struct ProjectedTensor {
   template <class Law, class Real>
   LOAM_FN Impulse<Real> visit(const Law &law, StrainLimit limit, const Constraint<Real> &c,
                               Real (&state)[state_count]) const {
-    const Real zero(0.0f), one(1.0f), third(1.0f / 3.0f), h(c.substep);
+    const Real zero(0.0f), one(1.0f), three(3.0f), third(1.0f / 3.0f), h(c.substep);
     const Real volume = one / c.inverse_volume, a = h * h * volume;
     const Real stiffness = law.stiffness(c.history);
     const Real twice_mu = Real(law.twice_mu()) * stiffness, bulk = Real(law.bulk()) * stiffness;
@@ -58,35 +79,24 @@ template <bool NonAffine> struct ProjectedTensor {
       steepness = steepness + d * d;
     }
     const Real reach = a * maximum(third * steepness, one);
-    const Real an = reach * third * trace(N);
-    const Real deviatoric = one / (one + twice_mu * an), volumetric = one / (one + Real(3.0f) * bulk * an);
-    const Real mean = third * (R.m[0][0] + (R.m[1][1] + R.m[2][2]));
-    Mat3<Real> P = deviatoric * R;
-    const Real diagonal = (volumetric - deviatoric) * mean;
-    for (int i = 0; i < 3; ++i) P.m[i][i] = P.m[i][i] + diagonal;
+    // The mean part first: its step is exact. It moves the deviator of the trial too where inertia differs by direction.
+    const Real mean_N = third * trace(N), mean = third * (R.m[0][0] + (R.m[1][1] + R.m[2][2]));
+    const Sym3<Real> N_deviator = add_diagonal(N, zero - mean_N);
+    const Real volumetric = one / (one + three * bulk * reach * mean_N), mean_step = volumetric * mean;
+    const Real greatest_N = mean_N + Real(0.81649658f) * square_root(frobenius_squared(N_deviator)); // sqrt(2/3)
+    const Real deviatoric = one / (one + twice_mu * reach * greatest_N);
+    Mat3<Real> step = deviatoric * (R - full((twice_mu * reach * mean_step) * N_deviator));
+    const Real diagonal = mean_step - deviatoric * mean;
+    for (int i = 0; i < 3; ++i) step.m[i][i] = step.m[i][i] + diagonal;
+    // Where nothing yields the model is quadratic, and its minimum along the step is farther out where inertia differs by direction.
+    if constexpr (!Law::plastic) step = best_along(step, R, full(N), deviator_compliance, volume_compliance, reach) * step;
+    const Mat3<Real> relaxed_sigma = sigma + step;
 
-    // <P, S R>, <P, S P>, <P, P N>: with mean parts 3 mean_P mean_R
-    const Real mean_P = volumetric * mean;
-    const Mat3<Real> PN = P * full(N);
-    Real PR = zero, PP = zero, PPN = zero;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) {
-        PR = PR + P.m[i][j] * R.m[i][j];
-        PP = PP + P.m[i][j] * P.m[i][j];
-        PPN = PPN + P.m[i][j] * PN.m[i][j];
-      }
-    const Real three(3.0f), mean_PR = three * mean_P * mean, mean_PP = three * mean_P * mean_P;
-    const Real along = (PR - mean_PR) * deviator_compliance + mean_PR * volume_compliance;
-    const Real curvature = (PP - mean_PP) * deviator_compliance + mean_PP * volume_compliance + reach * PPN;
-    const auto moving = curvature > zero;
-    const Real theta = select(moving, along / select(moving, curvature, one), one);
-
-    const Mat3<Real> relaxed_sigma = sigma + theta * P;
     const Sym3<Real> relaxed_tau = symmetric_part(multiply_transposed(relaxed_sigma, D.gradient));
     const Real relaxed_mean = third * trace(relaxed_tau);
     const HenckyStrain<Real> relaxed = {three * volume_compliance * relaxed_mean,
                                         deviator_compliance * add_diagonal(relaxed_tau, zero - relaxed_mean)};
-    const Flow<Real> flow = {c.substep, minimum(theta * deviatoric, one), minimum(theta * volumetric, one)};
+    const Flow<Real> flow = {c.substep, deviatoric, volumetric};
 
     Impulse<Real> impulse;
     Real other_squared = zero;
