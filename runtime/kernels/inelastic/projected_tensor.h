@@ -106,7 +106,7 @@ template <bool NonAffine> struct ProjectedTensor {
       spring = h * twice_mu * volume * Real(drift_stiffness);
       drift = {state[9], state[10], state[11]};
       relaxed_drift = drift + (one / (one + h * spring * c.motion.response)) * (c.motion.drift - drift);
-      other_squared = Real(drift_stiffness) * dot(relaxed_drift, relaxed_drift);
+      other_squared = Real(drift_share * drift_stiffness) * dot(relaxed_drift, relaxed_drift);
     }
     const Projection<Real> projection = project(law, relaxed, other_squared, c.history, flow);
     const Sym3<Real> projected = add_diagonal(twice_mu * projection.strain.deviator, bulk * projection.strain.trace);

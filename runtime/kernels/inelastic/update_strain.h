@@ -45,7 +45,7 @@ template <class Law, bool NonAffine> struct UpdateStrain {
     const HenckyStrain<Real> strain = hencky_strain(S, limit, limited);
     if (any(limited)) team.count(p, limited, strain_limited);
     Real drift_scale = one, other_squared = zero;
-    if constexpr (NonAffine) other_squared = Real(drift_stiffness) * dot(motion.drift, motion.drift);
+    if constexpr (NonAffine) other_squared = Real(drift_share * drift_stiffness) * dot(motion.drift, motion.drift);
     // Matter that may come apart, with too few neighbours, is loose: its neighbourhood cannot tell a strain.
     const auto alone = team.own_count(p, neighbour_counts) < Real(3.0f);
     if constexpr (Law::plastic) {

@@ -1,0 +1,88 @@
+/* Cantilevers under their own weight, and the elastica that they are to follow. */
+#pragma once
+
+#include "solid.h"
+
+namespace loam::test {
+
+/* The end of an inextensible beam of length 1 under its own weight `load` = q L^3 / (E I) and a force P = `tip` E I / L^2 at its end, both across it:
+ * with the slope t at the arc length s, t'' = -(load (1 - s) + tip) cos t, t(0) = 0, t'(1) = 0. Shooting by bisection on t'(0). */
+struct Elastica {
+  double drop, shortening;
+};
+inline Elastica elastica(double load, double tip = 0) {
+  const int n = 400;
+  Elastica end = {};
+  const auto shoot = [&](double curvature) {
+    double t = 0, k = curvature;
+    end = {};
+    const double h = 1.0 / n;
+    const auto slope = [&](double s, double angle) { return -(load * (1 - s) + tip) * std::cos(angle); };
+    for (int i = 0; i < n; ++i) { // midpoint rule
+      const double s = i * h, middle = t + h / 2 * k, k_middle = k + h / 2 * slope(s, t);
+      t += h * k_middle;
+      k += h * slope(s + h / 2, middle);
+      end.drop += h * std::sin(middle);
+      end.shortening += h * (1 - std::cos(middle));
+    }
+    return k;
+  };
+  double low = 0, high = 2 * (load + tip) + 1;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    (shoot(middle) > 0 ? high : low) = middle;
+  }
+  return end;
+}
+
+/* A square beam of unit density 1000 kg/m^3 along x, held at x < 0, slowly loaded; the drop of its end over its length, averaged over a period. */
+struct Cantilever {
+  int layers = 4, length = 32, width = 4; // in spacings
+  double load = 1;
+  double step = 1e-3; // seconds of a substep
+  std::uint32_t iterations = 5;
+  float jitter = 0.12f, zero_energy_stiffness = 10;
+  std::uint32_t multiplier = LOAM_MULTIPLIER_PROJECTED_TENSOR;
+  unsigned seed = 1;
+
+  static constexpr double spacing = 0.01, density = 1000, gravity = 9.8;
+  double metres() const { return length * spacing; }
+  double youngs_modulus() const {
+    return 12 * density * gravity * std::pow(metres(), 3) / (load * std::pow(layers * spacing, 2));
+  }
+
+  Elastica run() const {
+    const Points points = {float(spacing), jitter, seed};
+    Solid beam(scenes::rubber(float(youngs_modulus())), points.box({0, 0, 0}, {length, layers, width}));
+    beam.held = Points{float(spacing), jitter, seed + 100}.box({-3, 0, 0}, {0, layers, width});
+    beam.scene.material.density = float(density);
+    beam.def.iterations = iterations;
+    beam.def.substeps = 10;
+    beam.def.zero_energy_stiffness = zero_energy_stiffness;
+    beam.def.multiplier = multiplier;
+    scenes::World world = beam.make();
+    // The lowest natural period is 2 pi / 3.516 sqrt(rho A L^4 / (E I)).
+    const double period = 2 * pi / 3.516 * std::sqrt(load * metres() / gravity), ramp = 2 * period, end = ramp + period;
+    const double frame = step * beam.def.substeps;
+    double drop = 0, shortening = 0, samples = 0;
+    for (double t = 0; t < end; t += frame) {
+      const double s = std::min(1.0, t / ramp);
+      const float g[3] = {0, float(-gravity * s * s * (3 - 2 * s)), 0};
+      scenes::require(loam_world_set_gravity(world.get(), g), "loam_world_set_gravity");
+      world.step(float(frame));
+      if (t < ramp) continue;
+      const scenes::Snapshot now = world.snapshot();
+      const std::size_t free = beam.scene.count(), slice = std::size_t(layers * width);
+      for (std::size_t i = 3 * (free - slice); i < 3 * free; i += 3) {
+        drop -= double(now.positions[i + 1] - beam.scene.positions[i + 1]);
+        shortening -= double(now.positions[i] - beam.scene.positions[i]);
+        samples += 1;
+      }
+    }
+    // The last slice lies half a spacing before the end, on a line that is nearly straight there.
+    const double extrapolate = length / (length - 0.5) / samples / metres();
+    return {drop * extrapolate, shortening * extrapolate};
+  }
+};
+
+} // namespace loam::test
