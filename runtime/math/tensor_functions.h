@@ -169,7 +169,9 @@ inline StrainLimit strain_limit(double limit) {
 
 // log(I + S) / 2 for S = b - I. Principal strains beyond the limit are clamped, and then S is changed to match and `limited` set. The
 // limit is 0.4 or more, so that the polynomials' range lies within it. A NaN ends at the lower limit.
-template <class T, class Mask> LOAM_FN HenckyStrain<T> hencky_strain(Sym3<T> &S, StrainLimit limit, Mask &limited) {
+// `decomposed` is set where the polynomials' range was left for an eigen-decomposition.
+template <class T, class Mask>
+LOAM_FN HenckyStrain<T> hencky_strain(Sym3<T> &S, StrainLimit limit, Mask &limited, Mask &decomposed) {
   const T third(1.0f / 3.0f), half(0.5f), one(1.0f);
   // b = (1 + t)(I + Q) with Q traceless
   const T t = trace(S) * third;
@@ -195,6 +197,7 @@ template <class T, class Mask> LOAM_FN HenckyStrain<T> hencky_strain(Sym3<T> &S,
   const auto inside = both(both(t > T(-0.35f), t < T(0.45f)), frobenius_squared(Q) < T(0.18f));
   const auto outside = opposite(inside);
   limited = both(outside, inside);
+  decomposed = outside;
   if (any(outside)) {
     const Eigen3<T> eigen = eigen_decomposition(S);
     const T least(limit.least), most(limit.most);
@@ -214,6 +217,10 @@ template <class T, class Mask> LOAM_FN HenckyStrain<T> hencky_strain(Sym3<T> &S,
     limited = moved;
   }
   return result;
+}
+template <class T, class Mask> LOAM_FN HenckyStrain<T> hencky_strain(Sym3<T> &S, StrainLimit limit, Mask &limited) {
+  Mask decomposed = limited;
+  return hencky_strain(S, limit, limited, decomposed);
 }
 
 } // namespace loam

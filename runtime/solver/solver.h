@@ -131,7 +131,7 @@ private:
   Array<std::uint32_t> keys_, order_;
   Array<float> x_, y_, z_;
   Array<int> cell_starts_, neighbour_counts_, close_counts_;
-  Array<int> counters_; // speed limited, strain limited, contacts
+  Array<int> counters_; // speed limited, strain limited, contacts, strain decomposed
   Array<float> corrections_, densities_;
   Array<float> meetings_; // material by material
   bool contact_between_materials_ = false;

@@ -289,6 +289,7 @@ template <class Executor> void Solver<Executor>::finish_statistics(const StepInp
   for (int k = 0; k < 3; ++k) statistics_.momentum[k] = motion.momentum[k];
   statistics_.speed_limited = static_cast<std::uint64_t>(executor_.read(counters_.data()));
   statistics_.strain_limited = static_cast<std::uint64_t>(executor_.read(counters_.data() + 1));
+  statistics_.strain_decomposed = static_cast<std::uint64_t>(executor_.read(counters_.data() + 3));
   statistics_.stiffness_share = static_cast<double>(input.stiffness_share);
   statistics_.residual = residual_;
   statistics_.virial = virial_moment_;

@@ -50,10 +50,11 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
     with_law(m, [&](const auto &law, StrainLimit limit) {
       using Law = std::remove_cvref_t<decltype(law)>;
       const auto update = [&](auto non_affine) {
-        ex.for_each_particle_of(m, now_.velocities.data(),
-                                UpdateStrain<Law, non_affine.value>{
-                                    law, limit, h_, now_.strains.data(), now_.histories.data(), now_.log_volumes.data(),
-                                    now_.drifts.data(), drift_stiffness(), neighbour_counts_.data(), counters_.data() + 1});
+        ex.for_each_particle_of(
+            m, now_.velocities.data(),
+            UpdateStrain<Law, non_affine.value>{law, limit, h_, now_.strains.data(), now_.histories.data(),
+                                                now_.log_volumes.data(), now_.drifts.data(), drift_stiffness(),
+                                                neighbour_counts_.data(), counters_.data() + 1, counters_.data() + 3});
       };
       if (settings_.projected_tensor)
         update(std::bool_constant<Law::resists_zero_energy_modes>());

@@ -49,6 +49,16 @@ TEST(Objectivity, AFiniteRotationStrainsNothing) {
   }
 }
 
+TEST(AffinePatch, StrainsBeyondThePolynomialsRangeAreCounted) {
+  const scenes::Scene cloud = test::centred_cloud(scenes::rubber(), 4);
+  for (const auto &[rate, times] : {std::pair(50.0, 0u), std::pair(400.0, 64u)}) { // stretches of .05 and .4 in one step
+    scenes::World world = test::prescribed(cloud, Vector(rate, 0, 0).asDiagonal().toDenseMatrix());
+    world.step(1e-3f);
+    EXPECT_EQ(world.statistics().strain_decomposed, times);
+    EXPECT_EQ(world.statistics().strain_limited, 0u);
+  }
+}
+
 /* Principal stresses, least compression first, of the particle in the middle after A for 0.1 s. */
 Vector principal_stresses(const loam_material_def &material, const Matrix &A) {
   const scenes::Scene cloud = test::centred_cloud(material, 5);

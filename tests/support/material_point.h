@@ -43,7 +43,8 @@ public:
                                                nullptr,
                                                0.0f,
                                                cloud_.neighbour_counts.data(),
-                                               &limited_};
+                                               &limited_,
+                                               &decomposed_};
           stage(team, centre);
         },
         law_);
@@ -80,7 +81,7 @@ private:
   static constexpr int centre = 13;
   Cloud cloud_;
   LawVariant law_;
-  int limited_ = 0;
+  int limited_ = 0, decomposed_ = 0;
 };
 
 } // namespace loam::test

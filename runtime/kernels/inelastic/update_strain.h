@@ -19,7 +19,7 @@ template <class Law, bool NonAffine> struct UpdateStrain {
   float *drifts;         // 3 a particle; null without NonAffine
   float drift_stiffness; // stiffness / r^2, see non_affine.h
   const int *neighbour_counts;
-  int *strain_limited; // counter
+  int *strain_limited, *strain_decomposed; // counters
 
   static constexpr float greatest_drift = 0.5f; // as a strain
 
@@ -41,9 +41,10 @@ template <class Law, bool NonAffine> struct UpdateStrain {
         team.own_value(p, log_volumes, 1, 0) + select(absolute(volume_step) < Real(10.0f), volume_step, zero); // not NaN
     team.set_own_value(p, log_volumes, 1, 0, minimum(maximum(log_volume, Real(-20.0f)), Real(20.0f)));
 
-    auto limited = zero > zero;
-    const HenckyStrain<Real> strain = hencky_strain(S, limit, limited);
+    auto limited = zero > zero, decomposed = limited;
+    const HenckyStrain<Real> strain = hencky_strain(S, limit, limited, decomposed);
     if (any(limited)) team.count(p, limited, strain_limited);
+    if (any(decomposed)) team.count(p, decomposed, strain_decomposed);
     Real drift_scale = one, other_squared = zero;
     if constexpr (NonAffine) other_squared = Real(drift_share * drift_stiffness) * dot(motion.drift, motion.drift);
     // Matter that may come apart, with too few neighbours, is loose: its neighbourhood cannot tell a strain.
