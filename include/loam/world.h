@@ -107,7 +107,7 @@ typedef struct loam_world_def {
 
   /* Motion of neighbours against each other that no velocity gradient shows (zig-zags) is resisted by a spring with this share of the shear
    * modulus, and yields with the matter; it is independent of the substep and vanishes as r becomes small. For all laws but DRUCKER_PRAGER, with
-   * PROJECTED_TENSOR. 0 to 100; default 1. */
+   * PROJECTED_TENSOR. 0 to 100; default 10. */
   float zero_energy_stiffness;
 } loam_world_def;
 

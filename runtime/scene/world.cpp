@@ -64,7 +64,7 @@ loam_world_def default_world() {
   def.gradient_cutoff = 0.2f;
   def.particle_capacity = 65536;
   def.multiplier = LOAM_MULTIPLIER_PROJECTED_TENSOR;
-  def.zero_energy_stiffness = 1;
+  def.zero_energy_stiffness = 10;
   return def;
 }
 
