@@ -5,7 +5,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 packages=(libtbb-dev libtbb12 libtbbmalloc2 libtbbbind-2-5 libhwy-dev libhwy1 nlohmann-json3-dev libtomlplusplus-dev libtomlplusplus3
-  libstb-dev libstb0 libfmt-dev libfmt9 libcli11-dev libtinyobjloader-dev libtinyobjloader2rc10 libembree-dev libembree3-3
+  libstb-dev libstb0 libfmt-dev libfmt9 libcli11-dev libembree-dev libembree3-3
   libeigen3-dev libgtest-dev libgmock-dev libbenchmark-dev libbenchmark1debian)
 limit_mib=40
 

@@ -1,16 +1,18 @@
 #!/usr/bin/env bash
 # Installs what is missing to build Loam on Debian 12, as root or through sudo. Does nothing, at once, where nothing is missing.
-#   install_dependencies.sh [demo|tests]      demo: the library and the sample programs; tests (default): that and every check
+#   install_dependencies.sh [demo|tests|fuzz]      demo: the library and the sample programs; tests (default): that and every check;
+#                                                  fuzz: what libFuzzer needs
 # shellcheck source=scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 group=${1:-tests}
 packages=(g++ cmake ninja-build libtbb-dev libhwy-dev
-  nlohmann-json3-dev libtomlplusplus-dev libstb-dev libfmt-dev libcli11-dev libtinyobjloader-dev libembree-dev)
+  nlohmann-json3-dev libtomlplusplus-dev libstb-dev libfmt-dev libcli11-dev libembree-dev)
 case $group in
   demo) ;;
   tests) packages+=(git python3 binutils clang clang-format clang-tidy libeigen3-dev libgtest-dev libbenchmark-dev) ;;
-  *) die "unknown group '$group': demo or tests" ;;
+  fuzz) packages+=(clang libclang-rt-14-dev) ;;
+  *) die "unknown group '$group': demo, tests or fuzz" ;;
 esac
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then

@@ -280,7 +280,7 @@ void VisitOrder::interleave_lists(const int *lists, int first_batch, int last_ba
     const auto first = static_cast<std::size_t>(offsets_[batch]),
                steps = static_cast<std::size_t>(offsets_[batch + 1]) - first;
     const int *list = lists + 3 * first * W;
-    int *to = &indices_[first * W];
+    int *to = indices_.data() + first * W; // null where nothing has a neighbour
     for (std::size_t lane = 0; lane < W; ++lane, list += 3 * steps) {
       const bool idle = lane >= static_cast<std::size_t>(active_[batch]);
       const auto total = idle ? 0 : static_cast<std::size_t>(table_.neighbour_counts[ids[lane]]);

@@ -1,9 +1,11 @@
 #include "cpu/workers.h"
 
+#include <algorithm>
 #include <exception>
 #include <thread>
 #include <vector>
 
+#include <tbb/info.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
@@ -132,10 +134,12 @@ void Workers::run_session(void (*body)(void *), void *data) {
     run_body();
     for (void *token : tokens) job_system_.finish(job_system_.user, token);
   } else {
-    tbb::task_arena arena(static_cast<int>(thread_count_));
+    // oneTBB has no more threads than the machine, and asked for more it prints a warning.
+    const int threads = std::min(static_cast<int>(thread_count_), tbb::info::default_concurrency());
+    tbb::task_arena arena(threads);
     arena.execute([&] {
       tbb::task_group helpers;
-      for (unsigned i = 1; i < thread_count_; ++i) helpers.run([this] { help(); });
+      for (int i = 1; i < threads; ++i) helpers.run([this] { help(); });
       run_body();
       helpers.wait();
     });

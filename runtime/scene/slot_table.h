@@ -1,4 +1,6 @@
-// Objects named by ids of index, generation and world: a stale id is recognised, never taken for another object.
+// Objects named by ids: a stale id is recognised, never taken for another object. From the top, an id holds
+//
+//     kind (3 bits) | tag of the world (13 bits) | generation (16 bits) | index (32 bits)
 #pragma once
 
 #include <cstdint>
@@ -9,14 +11,19 @@
 
 namespace loam {
 
+enum class IdKind : std::uint8_t { material = 1, collider = 2 }; // at most 7: an id of one kind is never good for another
+
 template <class T> class SlotTable {
 public:
-  SlotTable(const char *kind, std::uint16_t world_tag, std::size_t most) : kind_(kind), world_tag_(world_tag), most_(most) {}
+  // `world_tag` is 1 to greatest_tag.
+  SlotTable(IdKind kind, const char *name, std::uint16_t world_tag, std::size_t most)
+      : name_(name), tag_(static_cast<std::uint16_t>(static_cast<unsigned>(kind) << tag_bits | world_tag)), most_(most) {}
+  static constexpr unsigned tag_bits = 13, greatest_tag = (1u << tag_bits) - 1;
 
   // The id that the next add() will give. Throws Error CAPACITY if there is no room.
   std::uint64_t next_id() const {
     const std::size_t index = free_slot();
-    if (index == most_) throw Error(LOAM_ERROR_CAPACITY, format("a world holds at most %zu %ss", most_, kind_));
+    if (index == most_) throw Error(LOAM_ERROR_CAPACITY, format("a world holds at most %zu %ss", most_, name_));
     const std::uint16_t generation = index < slots_.size() ? slots_[index].generation : 1;
     return make_id(index, generation);
   }
@@ -35,15 +42,17 @@ public:
     const char *why = nullptr;
     if (id == 0)
       why = "is the null id";
-    else if (tag != world_tag_)
+    else if ((tag & greatest_tag) != (tag_ & greatest_tag))
       why = "is not of this world";
+    else if (tag != tag_)
+      why = "names something of another kind";
     else if (index >= slots_.size() || generation > slots_[index].generation)
       why = "was never given out";
     else if (!slots_[index].in_use || generation != slots_[index].generation)
       why = "is stale: its object was destroyed";
     if (why != nullptr)
       throw Error(LOAM_ERROR_INVALID_HANDLE,
-                  format("%s 0x%016llx %s (a %s was expected)", argument, static_cast<unsigned long long>(id), why, kind_));
+                  format("%s 0x%016llx %s (a %s was expected)", argument, static_cast<unsigned long long>(id), why, name_));
     return index;
   }
   T &at(std::uint64_t id, const char *argument) { return slots_[index_of(id, argument)].object; }
@@ -73,11 +82,11 @@ private:
     return slots_.size();
   }
   std::uint64_t make_id(std::size_t index, std::uint16_t generation) const {
-    return (static_cast<std::uint64_t>(world_tag_) << 48) | (static_cast<std::uint64_t>(generation) << 32) | index;
+    return (static_cast<std::uint64_t>(tag_) << 48) | (static_cast<std::uint64_t>(generation) << 32) | index;
   }
 
-  const char *kind_;
-  std::uint16_t world_tag_;
+  const char *name_;
+  std::uint16_t tag_; // and the kind
   std::size_t most_;
   std::vector<Slot> slots_;
 };

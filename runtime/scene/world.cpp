@@ -17,7 +17,7 @@ namespace {
 // Tags the ids of a world, so that one world's id is recognised as foreign by another. Never 0.
 std::uint16_t next_tag() {
   static std::atomic<std::uint32_t> counter{0};
-  return static_cast<std::uint16_t>(1 + counter.fetch_add(1, std::memory_order_relaxed) % 65535);
+  return static_cast<std::uint16_t>(1 + counter.fetch_add(1, std::memory_order_relaxed) % SlotTable<int>::greatest_tag);
 }
 
 void check_hooks(const loam_world_def &def) {
@@ -92,7 +92,8 @@ void check_world_def(const loam_world_def &def) {
 using namespace loam;
 
 loam_world::loam_world(const loam_world_def &def)
-    : def_(def), tag_(next_tag()), materials_("material", tag_, 4096), colliders_("collider", tag_, 4096) {
+    : def_(def), tag_(next_tag()), materials_(IdKind::material, "material", tag_, 4096),
+      colliders_(IdKind::collider, "collider", tag_, 4096) {
   execution_ = {def.allocator, def.job_system, def.thread_count, def.instruction_set};
   if (execution_.instruction_set == LOAM_INSTRUCTION_SET_AUTO) execution_.instruction_set = best_instruction_set();
   if (kernel_table(execution_.instruction_set) == nullptr)
@@ -188,13 +189,17 @@ void loam_world::set_accuracy(std::uint32_t substeps, std::uint32_t iterations) 
 
 void loam_world::send_materials() {
   std::vector<SolverMaterial> list;
+  std::size_t needed = 0; // behind the last one that exists, no room is asked for: removing a material must not need memory
   for (std::size_t i = 0; i < materials_.size(); ++i) {
     const Material *m = materials_.at_index(i);
-    if (m == nullptr)
+    if (m == nullptr) {
       list.push_back({Elastic{}, "", false});
-    else
+    } else {
       list.push_back({make_law(m->def, static_cast<double>(m->stiffness_share)), m->def.name, m->particles > 0});
+      needed = list.size();
+    }
   }
+  list.erase(list.begin() + static_cast<std::ptrdiff_t>(needed), list.end());
   for (const Contact &contact : contacts_)
     for (const auto &[own, other] : {std::pair(contact.a, contact.b), std::pair(contact.b, contact.a)}) {
       list[own].meetings.resize(list.size(), -1.0f);
@@ -327,10 +332,16 @@ void loam_world::add_particles(loam_material_id material, const char *argument, 
                 format("a particle of %g m^3 and %g kg/m^3 has a mass that single precision cannot hold",
                        static_cast<double>(particles.volume), static_cast<double>(m.def.density)));
   if (particles.count == 0) return;
-  backend_->add_particles(particles);
   const bool first = m.particles == 0;
   m.particles += particles.count;
-  if (first) send_materials();
+  try {
+    if (first) send_materials();
+    backend_->add_particles(particles);
+  } catch (...) {
+    m.particles -= particles.count;
+    if (first) send_materials(); // as they were: there is room
+    throw;
+  }
 }
 
 std::uint64_t loam_world::fill(const loam_fill_def &def) {

@@ -291,8 +291,9 @@ template <class Executor> void Solver<Executor>::finish_statistics(const StepInp
   statistics_.strain_limited = static_cast<std::uint64_t>(executor_.read(counters_.data() + 1));
   statistics_.strain_decomposed = static_cast<std::uint64_t>(executor_.read(counters_.data() + 3));
   statistics_.stiffness_share = static_cast<double>(input.stiffness_share);
-  statistics_.residual = residual_;
-  statistics_.virial = virial_moment_;
+  // Their terms are single precision: with the largest radii and moduli they may overflow.
+  statistics_.residual = std::isfinite(residual_) ? residual_ : 0;
+  statistics_.virial = std::isfinite(virial_moment_) ? virial_moment_ : 0;
   lap(schedule_.statistics, particles());
 }
 

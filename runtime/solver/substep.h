@@ -35,7 +35,9 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
   ex.for_each(count_, LimitSpeed{now_.velocities.data(), settings_.kernel_radius / h_, counters_.data()});
   lap(schedule_.speed_limit, particles());
   if (contact_count_ > 0) {
-    ex.for_each(contact_count_, SolveContacts{contacts_.data(), now_.velocities.data(), h_});
+    ex.for_each(contact_count_, SolveContactsWithinLimit{{contacts_.data(), now_.velocities.data(), h_},
+                                                         settings_.kernel_radius / h_,
+                                                         counters_.data()});
     const float margin = 0.05f * 0.5f * settings_.kernel_radius;
     const int colliders = static_cast<int>(input.colliders.size());
     ex.for_each(contact_count_, SweepContacts{contacts_.data(), now_.positions.data(), now_.velocities.data(),

@@ -1,15 +1,17 @@
 #include "obj_reader.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <sstream>
+#include <string_view>
 
 #include <fmt/format.h>
-#include <tiny_obj_loader.h>
 
 #include "error.h"
 
@@ -20,6 +22,9 @@ std::string read_text(const std::filesystem::path &path) {
   std::error_code problem;
   if (std::filesystem::is_directory(path, problem))
     throw Error(fmt::format("{}: is a folder, not an OBJ file", path.string()));
+  // Devices and pipes may never end.
+  if (std::filesystem::exists(path, problem) && !std::filesystem::is_regular_file(path, problem))
+    throw Error(fmt::format("{}: is not a regular file", path.string()));
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
@@ -31,94 +36,108 @@ std::string read_text(const std::filesystem::path &path) {
   return text.str();
 }
 
-// The lines (from 1) on which the file's vertices and faces stand, in their order: tinyobjloader does not keep them. It also reads
-// coordinates that are no numbers, NaN among them, as zero without a word; hence the check here.
-struct Lines {
-  std::vector<std::size_t> vertices, faces;
+// Takes the next word off a line; empty at its end.
+std::string_view next_word(std::string_view &line) {
+  constexpr std::string_view spaces = " \t\r\v\f";
+  line.remove_prefix(std::min(line.find_first_not_of(spaces), line.size()));
+  const std::string_view word = line.substr(0, line.find_first_of(spaces));
+  line.remove_prefix(word.size());
+  return word;
+}
 
-  Lines(const std::string &name, const std::string &text) {
-    std::istringstream stream(text);
-    std::string line;
-    for (std::size_t number = 1; std::getline(stream, line); ++number) {
-      std::istringstream words(line);
-      std::string word;
-      words >> word;
-      if (word == "v") {
-        vertices.push_back(number);
-        for (const char axis : {'x', 'y', 'z'}) {
-          word.clear();
-          words >> word;
-          check_coordinate(fmt::format("{}:{}: vertex {}: {}", name, number, vertices.size(), axis), word);
-        }
-      } else if (word == "f") {
-        faces.push_back(number);
-        std::size_t corners = 0;
-        while (words >> word && word[0] != '#') ++corners;
-        if (corners < 3)
-          throw Error(fmt::format("{}:{}: face {} has {} corners, not three or more", name, number, faces.size(), corners));
-      }
+// Vertices and faces; what else a file holds is passed over. Numbers are read strictly: a typing error must not become a zero.
+class Reader {
+public:
+  Reader(const std::string &name, std::string_view text) : name_(name) {
+    for (line_ = 1; !text.empty(); ++line_) {
+      std::string_view line = text.substr(0, text.find('\n'));
+      text.remove_prefix(std::min(line.size() + 1, text.size()));
+      const std::string_view statement = next_word(line);
+      if (statement == "v") read_vertex(line);
+      if (statement == "f") read_face(line);
     }
+    if (mesh_.vertices.empty()) throw Error(fmt::format("{}: no vertices (\"v x y z\" lines)", name_));
+    if (mesh_.indices.empty()) throw Error(fmt::format("{}: no faces (\"f a b c\" lines)", name_));
+    // Faces may come before their vertices.
+    for (const Face &face : faces_)
+      for (std::size_t i = face.first_index; i < face.end_index; ++i)
+        if (mesh_.indices[i] >= mesh_.vertices.size()) refuse_vertex(face, std::int64_t{mesh_.indices[i]} + 1);
+  }
+  Mesh mesh() { return std::move(mesh_); }
+
+private:
+  struct Face {
+    std::size_t line, number, first_index, end_index;
+  };
+
+  void read_vertex(std::string_view line) {
+    Vector3 vertex;
+    for (int axis = 0; axis < 3; ++axis) vertex[axis] = coordinate(next_word(line), "xyz"[axis]);
+    mesh_.vertices.push_back(vertex);
   }
 
-  static void check_coordinate(const std::string &where, const std::string &word) {
+  float coordinate(std::string_view word, char axis) const {
     float value = 0;
     const char *begin = word.data() + (word.starts_with('+') ? 1 : 0), *end = word.data() + word.size();
     const std::from_chars_result read = std::from_chars(begin, end, value);
     const bool too_large = read.ec == std::errc::result_out_of_range;
+    const auto where = [&] { return fmt::format("{}:{}: vertex {}: {}", name_, line_, mesh_.vertices.size() + 1, axis); };
     if (word.empty() || read.ptr != end || (read.ec != std::errc() && !too_large))
-      throw Error(fmt::format("{} is not a number: \"{}\"", where, word));
+      throw Error(fmt::format("{} is not a number: \"{}\"", where(), word));
     // Numbers too small for a float are out of range as well, and harmless.
-    if (!std::isfinite(value) || (too_large && std::fabs(std::strtod(word.c_str(), nullptr)) > 1))
-      throw Error(fmt::format("{} is not finite: {}", where, word));
+    if (!std::isfinite(value) || (too_large && std::fabs(std::strtod(std::string(word).c_str(), nullptr)) > 1))
+      throw Error(fmt::format("{} is not finite: {}", where(), word));
+    return value;
   }
-};
 
-std::string line_of(const std::vector<std::size_t> &lines, std::size_t which) {
-  return which < lines.size() ? fmt::format(":{}", lines[which]) : std::string();
-}
+  // A polygon is split into triangles around its first corner.
+  void read_face(std::string_view line) {
+    Face face = {line_, faces_.size() + 1, mesh_.indices.size(), 0};
+    std::vector<std::uint32_t> corners;
+    for (std::string_view word = next_word(line); !word.empty() && word[0] != '#'; word = next_word(line))
+      corners.push_back(corner(face, word));
+    if (corners.size() < 3)
+      throw Error(
+          fmt::format("{}:{}: face {} has {} corners, not three or more", name_, line_, face.number, corners.size()));
+    for (std::size_t c = 1; c + 1 < corners.size(); ++c)
+      mesh_.indices.insert(mesh_.indices.end(), {corners[0], corners[c], corners[c + 1]});
+    face.end_index = mesh_.indices.size();
+    faces_.push_back(face);
+  }
+
+  // vertex, vertex/texture, vertex//normal or vertex/texture/normal; a negative vertex counts back from the last one so far.
+  std::uint32_t corner(const Face &face, std::string_view word) const {
+    const std::string_view number = word.substr(0, word.find('/'));
+    std::int64_t vertex = 0;
+    const std::from_chars_result read = std::from_chars(number.data(), number.data() + number.size(), vertex);
+    if (read.ec == std::errc::invalid_argument || read.ptr != number.data() + number.size())
+      throw Error(
+          fmt::format("{}:{}: face {}: \"{}\" does not start with a vertex number", name_, line_, face.number, word));
+    const auto count = static_cast<std::int64_t>(mesh_.vertices.size());
+    if (read.ec != std::errc() || vertex == 0 || vertex < -count || vertex > std::numeric_limits<std::int32_t>::max())
+      throw Error(fmt::format("{}:{}: face {} refers to vertex {}; the file has {} up to here, counted from 1", name_, line_,
+                              face.number, number, count));
+    return static_cast<std::uint32_t>(vertex < 0 ? count + vertex : vertex - 1);
+  }
+
+  [[noreturn]] void refuse_vertex(const Face &face, std::int64_t vertex) const {
+    throw Error(fmt::format("{}:{}: face {} refers to vertex {}, but the file has {} vertices", name_, face.line,
+                            face.number, vertex, mesh_.vertices.size()));
+  }
+
+  const std::string &name_;
+  std::size_t line_ = 0;
+  Mesh mesh_;
+  std::vector<Face> faces_;
+};
 
 } // namespace
 
-Mesh read_obj(const std::filesystem::path &path) {
-  const std::string name = path.string();
-  const std::string text = read_text(path);
+Mesh read_obj(const std::filesystem::path &path) { return parse_obj(path.string(), read_text(path)); }
+
+Mesh parse_obj(const std::string &name, const std::string &text) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) throw Error(fmt::format("{}: the file is empty", name));
-  const Lines lines(name, text);
-
-  tinyobj::attrib_t attributes;
-  std::vector<tinyobj::shape_t> shapes;
-  std::vector<tinyobj::material_t> materials;
-  std::string warning, problem;
-  std::istringstream stream(text);
-  // Polygons are split below, so that a face keeps its place in the file; material files are of no use here.
-  const bool read = tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &problem, &stream, nullptr, false);
-  while (!problem.empty() && (problem.back() == '\n' || problem.back() == ' ')) problem.pop_back();
-  if (!read) throw Error(fmt::format("{}: not a valid OBJ file: {}", name, problem));
-  if (attributes.vertices.empty()) throw Error(fmt::format("{}: no vertices (\"v x y z\" lines)", name));
-
-  Mesh mesh;
-  for (std::size_t i = 0; i + 2 < attributes.vertices.size(); i += 3)
-    mesh.vertices.push_back({attributes.vertices[i], attributes.vertices[i + 1], attributes.vertices[i + 2]});
-
-  std::size_t face = 0;
-  for (const tinyobj::shape_t &shape : shapes) {
-    std::size_t corner = 0;
-    for (const unsigned corners : shape.mesh.num_face_vertices) {
-      for (unsigned c = 0; c < corners; ++c) {
-        const int vertex = shape.mesh.indices[corner + c].vertex_index;
-        if (vertex < 0 || static_cast<std::size_t>(vertex) >= mesh.vertices.size())
-          throw Error(fmt::format("{}{}: face {} refers to vertex {}, but the file has {} vertices", name,
-                                  line_of(lines.faces, face), face + 1, vertex + 1, mesh.vertices.size()));
-      }
-      for (unsigned c = 1; c + 1 < corners; ++c)
-        for (const unsigned k : {0u, c, c + 1})
-          mesh.indices.push_back(static_cast<std::uint32_t>(shape.mesh.indices[corner + k].vertex_index));
-      corner += corners;
-      ++face;
-    }
-  }
-  if (mesh.indices.empty()) throw Error(fmt::format("{}: no faces (\"f a b c\" lines)", name));
-  return mesh;
+  return Reader(name, text).mesh();
 }
 
 } // namespace runner

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -9,6 +11,7 @@
 #include "error.h"
 #include "material_reader.h"
 #include "obj_reader.h"
+#include "toml_document.h"
 #include "toml_table.h"
 
 namespace runner {
@@ -346,13 +349,16 @@ Scene read_scene(const std::filesystem::path &path) {
   if (!std::filesystem::exists(path, problem)) throw Error(fmt::format("{}: no such scene file", path.string()));
   if (std::filesystem::is_directory(path, problem))
     throw Error(fmt::format("{}: is a folder, not a scene file", path.string()));
-  toml::table document;
-  try {
-    document = toml::parse_file(path.string());
-  } catch (const toml::parse_error &error) {
-    const toml::source_position at = error.source().begin;
-    throw Error(fmt::format("{}:{}:{}: {}", path.string(), at.line, at.column, error.description()));
-  }
+  if (!std::filesystem::is_regular_file(path, problem)) // a device or a pipe may never end
+    throw Error(fmt::format("{}: is not a regular file", path.string()));
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw Error(fmt::format("{}: cannot be read", path.string()));
+  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  return parse_scene(path, text);
+}
+
+Scene parse_scene(const std::filesystem::path &path, std::string_view text) {
+  const toml::table document = parse_toml(path, text);
   return Reader(path).read(document);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 #include "scene.h"
 
@@ -10,6 +11,8 @@ namespace runner {
 // Reads a scene and the meshes that it names; mesh paths are relative to the scene file. Throws Error naming file, line and key for
 // anything that is unknown, missing or of the wrong type. Ranges of physical values are left to the library.
 Scene read_scene(const std::filesystem::path &path);
+// The same for a scene file's text; `path` is where it would stand.
+Scene parse_scene(const std::filesystem::path &path, std::string_view text);
 
 // Multiplies the number of particles by about `factor`: lengths of the discretisation shrink by its cube root, and the substeps
 // grow by the same, so that sound travels as many kernel radii a substep as before. The scene's size stays. Over 0.

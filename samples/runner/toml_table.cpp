@@ -71,6 +71,12 @@ double TomlTable::number(const toml::node &node, std::string_view key) const {
   return result;
 }
 
+float TomlTable::single(const toml::node &node, std::string_view key) const {
+  const double given = number(node, key);
+  if (std::fabs(given) > std::numeric_limits<float>::max()) fail(key, fmt::format("{} is too large", given));
+  return static_cast<float>(given);
+}
+
 std::int64_t TomlTable::integer(const toml::node &node, std::string_view key, std::int64_t least, std::int64_t most) const {
   const auto *whole = node.as_integer();
   if (whole == nullptr) fail(key, fmt::format("expected an integer, found a value of type {}", type_name(node)));
@@ -90,11 +96,7 @@ void TomlTable::read(std::string_view key, double &value) {
 }
 
 void TomlTable::read(std::string_view key, float &value) {
-  const toml::node *node = find(key);
-  if (node == nullptr) return;
-  const double given = number(*node, key);
-  if (std::fabs(given) > std::numeric_limits<float>::max()) fail(key, fmt::format("{} is too large", given));
-  value = static_cast<float>(given);
+  if (const toml::node *node = find(key)) value = single(*node, key);
 }
 
 void TomlTable::read(std::string_view key, std::uint32_t &value) {
@@ -123,8 +125,7 @@ void TomlTable::read(std::string_view key, Vector3 &value) {
   if (array == nullptr)
     fail(key, fmt::format("expected three numbers [x, y, z], found a value of type {}", type_name(*node)));
   if (array->size() != 3) fail(key, fmt::format("expected three numbers [x, y, z], found {} values", array->size()));
-  for (int axis = 0; axis < 3; ++axis)
-    value[axis] = static_cast<float>(number(*array->get(static_cast<std::size_t>(axis)), key));
+  for (int axis = 0; axis < 3; ++axis) value[axis] = single(*array->get(static_cast<std::size_t>(axis)), key);
 }
 
 void TomlTable::read(std::string_view key, std::vector<std::string> &value) {

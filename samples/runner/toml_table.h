@@ -51,6 +51,7 @@ public:
 private:
   const toml::node *find(std::string_view key);
   double number(const toml::node &node, std::string_view key) const;
+  float single(const toml::node &node, std::string_view key) const;
   std::int64_t integer(const toml::node &node, std::string_view key, std::int64_t least, std::int64_t most) const;
   const std::string &text(const toml::node &node, std::string_view key) const;
   [[noreturn]] void fail_choice(std::string_view key, const std::string &given,

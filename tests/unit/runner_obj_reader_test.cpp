@@ -67,6 +67,21 @@ TEST(RunnerObjReader, NamesTheLineOfWhatIsNoNumberAndOfASmallFace) {
   EXPECT_EQ(obj_error("v +0.5 1e-60 -3e0\nv 1 0 0\nv 1 1 0 # comment\nf 1/1/1 2//2 3\n"), "");
 }
 
+TEST(RunnerObjReader, NamesTheCornerThatIsNoVertexNumber) {
+  EXPECT_MENTIONS(obj_error(corners + "f 1 2 x/1\n"), "mesh.obj:5: face 1: \"x/1\"");
+  EXPECT_MENTIONS(obj_error(corners + "f 1 2 3.5\n"), "\"3.5\"");
+  EXPECT_MENTIONS(obj_error(corners + "f 1 2 \\\n 3\n"), "\"\\\"");
+  EXPECT_MENTIONS(obj_error(corners + "f 1 2 0\n"), "vertex 0");
+  // would be the last vertex if it wrapped around
+  EXPECT_MENTIONS(obj_error(corners + "f 1 2 99999999999999999999\n"), "99999999999999999999");
+}
+
+TEST(RunnerObjReader, TakesFacesBeforeTheirVertices) { EXPECT_EQ(obj_error("f 1 2 3\n" + corners), ""); }
+
+TEST(RunnerObjReader, RefusesWhatIsNotARegularFile) {
+  EXPECT_MENTIONS(error_text([] { runner::read_obj("/dev/zero"); }), "/dev/zero: is not a regular file");
+}
+
 TEST(RunnerObjReader, SurvivesNonsense) {
   EXPECT_NE(obj_error("f f f\nv\nv a b c\nf 1/2/3/4 //\n"), "");
   EXPECT_NE(obj_error(std::string(1000, '\xff')), "");

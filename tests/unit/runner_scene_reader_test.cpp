@@ -238,6 +238,18 @@ TEST(RunnerSceneReader, RefusesTwoAnswersToOneQuestionAndImpossibleOnes) {
   expect_mentions(scene_error(of_material("law = \"herschel_bulkley\"\nshear_yield_stress = 1e5\n"
                                           "film = { thickness = 0.01, slope_degrees = 45, speed = 1 }\n")),
                   {"scene.toml:8:", "materials[0].film"});
+
+TEST(RunnerSceneReader, TakesCharactersBeyondAsciiInStringsAndCommentsOnly) {
+  const std::string strings = "title = \"D\u00fcne \\\" \u00fc\" # \u00fc\n";
+  EXPECT_EQ(scene_error(strings + minimal), "");
+  EXPECT_EQ(scene_error("title = '''\u00fc\n\" ' \u00fc'''\n" + minimal), "");
+  EXPECT_EQ(scene_error("title = \"\"\"\u00fc\n\" \\\"\"\" \u00fc\"\"\"\n" + minimal), "");
+  expect_mentions(scene_error(minimal + "\ufeffx = 1\n"), {"scene.toml:12:", "not ASCII"});
+  expect_mentions(scene_error(strings + "a = \"b\" \u00fc\n" + minimal), {"scene.toml:2:", "not ASCII"});
+}
+
+TEST(RunnerSceneReader, RefusesNumbersThatSinglePrecisionDoesNotHold) {
+  expect_mentions(scene_error("[world]\ngravity = [0, 1e300, 0]\n"), {"scene.toml:2", "world.gravity", "1e+300"});
 }
 
 TEST(RunnerSceneReader, ReadsContactsAndRefusesThoseOfNobody) {

@@ -22,7 +22,7 @@ std::string refusal(const Table &table, std::uint64_t id) {
 }
 
 TEST(SlotTable, AddFindRemove) {
-  Table table("thing", 7, 10);
+  Table table(IdKind::material, "thing", 7, 10);
   const std::uint64_t a = table.add(1), b = table.add(2);
   EXPECT_NE(a, 0u);
   EXPECT_NE(a, b);
@@ -36,7 +36,7 @@ TEST(SlotTable, AddFindRemove) {
 }
 
 TEST(SlotTable, AFreedSlotIsUsedAgainUnderAnotherId) {
-  Table table("thing", 7, 1);
+  Table table(IdKind::material, "thing", 7, 1);
   const std::uint64_t first = table.add(1);
   table.remove(first, "first");
   EXPECT_NE(table.next_id(), first);
@@ -48,7 +48,7 @@ TEST(SlotTable, AFreedSlotIsUsedAgainUnderAnotherId) {
 }
 
 TEST(SlotTable, NullForeignAndInventedIdsAreNamedForWhatTheyAre) {
-  Table table("thing", 7, 10), other("thing", 8, 10);
+  Table table(IdKind::material, "thing", 7, 10), other(IdKind::material, "thing", 8, 10);
   const std::uint64_t id = table.add(1), foreign = other.add(1);
   EXPECT_NE(refusal(table, 0).find("null"), std::string::npos);
   EXPECT_NE(refusal(table, foreign).find("not of this world"), std::string::npos);
@@ -57,8 +57,23 @@ TEST(SlotTable, NullForeignAndInventedIdsAreNamedForWhatTheyAre) {
   EXPECT_NE(refusal(table, ~std::uint64_t(0)), "");
 }
 
+TEST(SlotTable, AnIdOfAnotherKindIsRefused) {
+  Table materials(IdKind::material, "material", 7, 10), colliders(IdKind::collider, "collider", 7, 10);
+  const std::uint64_t material = materials.add(1), collider = colliders.add(1);
+  EXPECT_NE(material, collider);
+  EXPECT_NE(refusal(colliders, material).find("another kind"), std::string::npos);
+  EXPECT_NE(refusal(materials, collider).find("another kind"), std::string::npos);
+  EXPECT_EQ(refusal(materials, material), "");
+}
+
+TEST(SlotTable, TheGreatestTagAndTheLowestAreToldApart) {
+  Table lowest(IdKind::material, "thing", 1, 10), greatest(IdKind::material, "thing", Table::greatest_tag, 10);
+  EXPECT_NE(refusal(greatest, lowest.add(1)).find("not of this world"), std::string::npos);
+  EXPECT_NE(refusal(lowest, greatest.add(1)).find("not of this world"), std::string::npos);
+}
+
 TEST(SlotTable, IsFullAtItsCapacity) {
-  Table table("thing", 7, 3);
+  Table table(IdKind::material, "thing", 7, 3);
   for (int k = 0; k < 3; ++k) table.add(k);
   try {
     table.add(3);
@@ -70,7 +85,7 @@ TEST(SlotTable, IsFullAtItsCapacity) {
 }
 
 TEST(SlotTable, AnIdNeverComesBackHoweverOftenItsSlotIsUsed) {
-  Table table("thing", 7, 2);
+  Table table(IdKind::material, "thing", 7, 2);
   std::set<std::uint64_t> seen;
   for (int k = 0; k < 70000; ++k) { // past the 16 bits of a generation
     const std::uint64_t id = table.add(k);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "kernels/contact/collider_view.h"
+#include "math/atomics.h"
 
 namespace loam {
 
@@ -16,7 +17,16 @@ struct SolveContacts {
   LOAM_FN void operator()(int index) const {
     Contact &contact = contacts[index];
     Row &row = velocities[contact.particle];
-    Vec3<float> v = xyz(row);
+    set(row, solved(contact, xyz(row)));
+  }
+
+protected:
+  LOAM_FN static void set(Row &row, const Vec3<float> &v) {
+    row.x = v.x;
+    row.y = v.y;
+    row.z = v.z;
+  }
+  LOAM_FN Vec3<float> solved(Contact &contact, Vec3<float> v) const {
     // The closest plane comes last: where planes contradict each other, it wins.
     for (int i = contact.plane_count - 1; i >= 0; --i) {
       const ContactPlane &plane = contact.planes[i];
@@ -34,9 +44,29 @@ struct SolveContacts {
       v = v + (friction_change - contact.friction_change[i]);
       contact.friction_change[i] = friction_change;
     }
-    row.x = v.x;
-    row.y = v.y;
-    row.z = v.z;
+    return v;
+  }
+};
+
+// The last time, after the speed limit. What contacts take back now was given against velocities that the limit has cut since; so this pass keeps to
+// the limit itself, above the speed of the surfaces.
+struct SolveContactsWithinLimit : SolveContacts {
+  float greatest_speed;
+  int *limited; // counter
+
+  LOAM_FN void operator()(int index) const {
+    Contact &contact = contacts[index];
+    Row &row = velocities[contact.particle];
+    Vec3<float> v = solved(contact, xyz(row));
+    float most = 0.0f;
+    for (int i = 0; i < contact.plane_count; ++i) most = maximum(most, length(contact.planes[i].surface_velocity));
+    most = most + greatest_speed;
+    const float squared = dot(v, v);
+    if (squared > most * most) {
+      v = (most / square_root(squared)) * v;
+      atomic_add(limited, 1);
+    }
+    set(row, v);
   }
 };
 
