@@ -11,7 +11,6 @@
 #include "error.h"
 #include "material_reader.h"
 #include "obj_reader.h"
-#include "toml_document.h"
 #include "toml_table.h"
 
 namespace runner {
@@ -358,7 +357,13 @@ Scene read_scene(const std::filesystem::path &path) {
 }
 
 Scene parse_scene(const std::filesystem::path &path, std::string_view text) {
-  const toml::table document = parse_toml(path, text);
+  toml::table document;
+  try {
+    document = toml::parse(text);
+  } catch (const toml::parse_error &error) {
+    const toml::source_position at = error.source().begin;
+    throw Error(fmt::format("{}:{}:{}: {}", path.string(), at.line, at.column, error.description()));
+  }
   return Reader(path).read(document);
 }
 
