@@ -16,12 +16,14 @@ void random_rotation(Random &random, float rotation[4]) {
   for (int k = 0; k < 4; ++k) rotation[k] = scale * turned[k];
 }
 
-/* The places of a definition's numbers: everything behind its law that is not the name. */
+/* The places of a definition's numbers: everything behind its law that is not the name or a choice. */
 std::vector<std::size_t> numbers_of_a_material() {
   std::vector<std::size_t> places;
   for (std::size_t at = offsetof(loam_material_def, density); at + sizeof(float) <= sizeof(loam_material_def);
        at += sizeof(float))
-    if (at < offsetof(loam_material_def, name) || at >= offsetof(loam_material_def, name) + sizeof(loam_material_def::name))
+    if (at != offsetof(loam_material_def, constant_hardness) &&
+        (at < offsetof(loam_material_def, name) ||
+         at >= offsetof(loam_material_def, name) + sizeof(loam_material_def::name)))
       places.push_back(at);
   return places;
 }
@@ -89,14 +91,25 @@ std::uint32_t law_count() {
 }
 
 loam_material_def random_material(Random &random) {
+  static const std::uint32_t preset_count = [] {
+    std::uint32_t count = 0;
+    while (loam_material_preset_name(count) != nullptr) ++count;
+    return count;
+  }();
   loam_material_def def;
-  loam_material_def_default(random.below(law_count()), &def, sizeof def);
-  constexpr double shares[] = {0, 0.2, 0.5};
-  const double share = random.pick(shares);
-  const double factor = random.chance(0.1) ? 1e3 : 10;
+  if (random.chance(0.3))
+    loam_material_def_preset(loam_material_preset_name(random.below(preset_count)), &def, sizeof def);
+  else
+    loam_material_def_default(random.below(law_count()), &def, sizeof def);
+  if (random.chance(0.1)) def.constant_hardness = 1;
+  if (random.chance(0.7)) scale_numbers(def, random);
+  return def;
+}
+
+void scale_numbers(loam_material_def &def, Random &random) {
+  const double share = random.chance(0.5) ? 0.1 : 0.4, factor = random.chance(0.1) ? 1e3 : 10;
   for (const std::size_t place : numbers_of_a_material())
     if (random.chance(share)) change_number(def, place, [&](float x) { return x * random.log_between(1 / factor, factor); });
-  return def;
 }
 
 void spoil(loam_material_def &def, Random &random) {

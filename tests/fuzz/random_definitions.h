@@ -18,8 +18,9 @@ float bad_number(Random &random);
 /* On the CPU, without hooks. */
 loam_world_def random_world(Random &random);
 
-/* Of any law that the library knows: its defaults, some fields scaled. Combinations may be out of range. */
+/* Of any law or preset that the library knows, some numbers scaled. Combinations may be out of range. */
 loam_material_def random_material(Random &random);
+void scale_numbers(loam_material_def &def, Random &random);
 std::uint32_t law_count();
 /* One of the definition's numbers is replaced. Laws ignore what belongs to others, so the result may still be valid. */
 void spoil(loam_material_def &def, Random &random);

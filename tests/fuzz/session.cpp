@@ -50,6 +50,7 @@ private:
   void step(Random &random);
   void change_settings(Random &random);
   void create_material(Random &random);
+  void change_material(Random &random);
   void destroy_material(Random &random);
   void create_collider(Random &random);
   void destroy_collider(Random &random);
@@ -351,6 +352,21 @@ void Session::create_material(Random &random) {
   back.struct_size = sizeof back;
   judge("get material", Expect::success, loam_material_get(world_, id, &back));
   if (std::memcmp(&back, &def, sizeof def) != 0) find("a material does not come back as it was given");
+}
+
+void Session::change_material(Random &random) {
+  if (materials_.empty()) return;
+  const Material &material = materials_[random.below(materials_.size())];
+  loam_material_def before = {};
+  before.struct_size = sizeof before;
+  judge("get material", Expect::success, loam_material_get(world_, material.id, &before));
+  loam_material_def def = random_material(random);
+  if (random.chance(0.6)) scale_numbers(def = before, random);
+  if (random.chance(0.1)) spoil(def, random);
+  const bool keeps = def.law == before.law && def.density == before.density;
+  const bool changed = call("change material", mapped_ ? Expect::failure : Expect::anything,
+                            [&] { return loam_material_set(world_, material.id, &def); });
+  if (changed && material.particles > 0 && !keeps) find("law or density of a material in use were changed");
 }
 
 void Session::destroy_material(Random &random) {
@@ -688,6 +704,7 @@ void Session::act(Random &random) {
   static constexpr Choice choices[] = {{60, &Session::step},
                                        {8, &Session::change_settings},
                                        {6, &Session::create_material},
+                                       {4, &Session::change_material},
                                        {3, &Session::destroy_material},
                                        {7, &Session::create_collider},
                                        {3, &Session::destroy_collider},

@@ -238,6 +238,7 @@ TEST(RunnerSceneReader, RefusesTwoAnswersToOneQuestionAndImpossibleOnes) {
   expect_mentions(scene_error(of_material("law = \"herschel_bulkley\"\nshear_yield_stress = 1e5\n"
                                           "film = { thickness = 0.01, slope_degrees = 45, speed = 1 }\n")),
                   {"scene.toml:8:", "materials[0].film"});
+}
 
 TEST(RunnerSceneReader, TakesCharactersBeyondAsciiInStringsAndCommentsOnly) {
   const std::string strings = "title = \"D\u00fcne \\\" \u00fc\" # \u00fc\n";
