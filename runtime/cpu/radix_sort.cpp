@@ -45,7 +45,7 @@ void RadixSort::sort(Workers &workers, std::uint32_t *keys, std::uint32_t *value
     std::swap(from_keys, to_keys);
     std::swap(from_values, to_values);
   }
-  if (from_keys != keys) {
+  if (from_keys != keys && count > 0) {
     workers.loop(chunks, [&](int c) {
       const int first = chunk_begin(c), length = chunk_begin(c + 1) - first;
       std::memcpy(keys + first, from_keys + first, static_cast<std::size_t>(length) * sizeof(std::uint32_t));

@@ -46,8 +46,8 @@ void check(const runner::Scene &scene) {
     check(emitter.def.spacing);
   }
   for (const runner::SceneCollider &collider : scene.colliders) {
-    check(collider.position);
-    check(collider.rotation);
+    check(collider.pose.position);
+    check(collider.pose.rotation);
     check(collider.friction);
   }
   if (scene.camera) check(scene.camera->eye);
