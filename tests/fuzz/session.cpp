@@ -51,6 +51,7 @@ private:
   void change_settings(Random &random);
   void create_material(Random &random);
   void change_material(Random &random);
+  void change_meeting(Random &random);
   void destroy_material(Random &random);
   void create_collider(Random &random);
   void destroy_collider(Random &random);
@@ -367,6 +368,15 @@ void Session::change_material(Random &random) {
   const bool changed = call("change material", mapped_ ? Expect::failure : Expect::anything,
                             [&] { return loam_material_set(world_, material.id, &def); });
   if (changed && material.particles > 0 && !keeps) find("law or density of a material in use were changed");
+}
+
+void Session::change_meeting(Random &random) {
+  if (materials_.empty()) return;
+  const loam_material_id a = any_material(random), b = any_material(random);
+  const std::uint32_t meeting = random.chance(0.7) ? LOAM_MEETING_CONTACT : LOAM_MEETING_SHARED;
+  const float friction = random.log_between(0.01, 100);
+  call("change meeting", a == b || mapped_ ? Expect::failure : Expect::success,
+       [&] { return loam_material_set_meeting(world_, a, b, meeting, friction); });
 }
 
 void Session::destroy_material(Random &random) {
@@ -705,6 +715,7 @@ void Session::act(Random &random) {
                                        {8, &Session::change_settings},
                                        {6, &Session::create_material},
                                        {4, &Session::change_material},
+                                       {5, &Session::change_meeting},
                                        {3, &Session::destroy_material},
                                        {7, &Session::create_collider},
                                        {3, &Session::destroy_collider},
