@@ -97,12 +97,6 @@ template <class TileType> struct TeamOverNeighbours {
     return tile.gather_lookup(numbers, table, k.index);
   }
 
-  // f(own particle, neighbour), for tiles of one thread
-  template <class F> LOAM_FN Vec3<Real> of_pair(int, const Neighbour &k, F &&f) const {
-    static_assert(Tile::width == 1);
-    return f(visit.particle, k.index);
-  }
-
   // of the particle itself
   LOAM_FN Vec4<Real> velocity(int p) const { return own_row(p, d.velocities); }
   LOAM_FN void set_velocity(int p, const Vec4<Real> &v) const { set_own_row(p, d.velocities, v); }

@@ -79,17 +79,6 @@ struct TeamOverCells {
     for (int l = 0; l < W; ++l) values[l] = table[numbers[k.index[l]]];
     return Pack::load(values);
   }
-  // f(own particle, neighbour) lane by lane; for rare paths
-  template <bool G, class F> LOAM_FN Vec3<Pack> of_pair(int b, const Neighbour<G> &k, F &&f) const {
-    alignas(64) float x[W], y[W], z[W];
-    for (int l = 0; l < W; ++l) {
-      const Vec3<float> v = f(own(b)[l], k.index[l]);
-      x[l] = v.x;
-      y[l] = v.y;
-      z[l] = v.z;
-    }
-    return {Pack::load(x), Pack::load(y), Pack::load(z)};
-  }
 
   // of the item's own particles
   LOAM_FN const int *own(int b) const { return d.ids + static_cast<long>(b) * W; }

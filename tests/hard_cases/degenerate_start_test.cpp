@@ -41,26 +41,6 @@ TEST_P(DegenerateStart, EveryParticleTwice) {
   EXPECT_LT(outcome.statistics.mean_speed, 1);
 }
 
-/* They have no direction to part in; whichever they take, both ends of a pair must take it. */
-TEST_P(DegenerateStart, CoincidentParticlesPartWithoutGainingMomentum) {
-  for (const std::size_t together : {2u, 3u}) { // of more, the speed limit takes some
-    scenes::Scene clusters = without_planes(block(scenes::sand(), 1, 0));
-    clusters.positions.clear();
-    for (std::size_t i = 0; i < 4 * together; ++i)
-      clusters.positions.insert(clusters.positions.end(), {float(i / together), 1.0f, 0.0f});
-    clusters.velocities.assign(clusters.positions.size(), 0.0f);
-    loam_world_def def = scenes::world_def(clusters);
-    def.solver = GetParam();
-    std::fill(def.gravity, def.gravity + 3, 0.0f);
-    scenes::World world(def, clusters);
-    world.step(1.0f / 120);
-    const loam_statistics now = world.statistics();
-    const double mass = double(clusters.count()) * double(clusters.material.density) * double(clusters.volume());
-    EXPECT_GT(now.mean_speed, 0.01) << together;
-    for (const double momentum : now.momentum) EXPECT_LT(std::fabs(momentum), 1e-5 * mass * now.mean_speed) << together;
-  }
-}
-
 TEST_P(DegenerateStart, LoneParticlesAndPairsFallAndRest) {
   scenes::Scene lone = block(scenes::sand(), 1, 0.05f);
   lone.positions.clear();

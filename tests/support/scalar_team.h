@@ -83,8 +83,6 @@ struct ScalarTeam {
     return table[numbers[id(k)]];
   }
 
-  template <class F> Vec3<float> of_pair(int p, const Neighbour &k, F &&f) const { return f(p, id(k)); }
-
   Vec4<float> velocity(int p) const { return vector4(cloud.velocities[std::size_t(p)]); }
   void set_velocity(int p, const Vec4<float> &v) { cloud.velocities[std::size_t(p)] = row(v); }
   Vec4<float> own_row(int p, const Row *rows) const { return vector4(rows[p]); }

@@ -12,15 +12,11 @@
 
 namespace loam {
 
-// Coincident particles have no direction to part in: each pair takes one of eight, opposite as seen from its two ends, or momentum would come from
-// nothing.
-struct PartingDirection {
-  LOAM_FN Vec3<float> operator()(int own, int other) const {
-    const int both = own ^ other;
-    const float a = own < other ? 0.57735027f : -0.57735027f;
-    return {(both & 1) != 0 ? a : -a, (both & 2) != 0 ? a : -a, (both & 4) != 0 ? a : -a};
-  }
-};
+// Coincident particles have no direction to part in: they take one by turns.
+LOAM_FN Vec3<float> fallback_direction(int turn) {
+  const float a = 0.57735027f;
+  return {(turn & 1) != 0 ? a : -a, (turn & 2) != 0 ? a : -a, (turn & 4) != 0 ? a : -a};
+}
 
 struct CorrectPositions {
   const Row *positions;
@@ -41,16 +37,15 @@ struct CorrectPositions {
   }
 
   // One-sided: the pair's impulse along its direction and, in contact, against its sliding at `velocity`; and its moment.
-  template <class Team, class Neighbour, class T>
-  LOAM_FN Vec3<T> impulse(const Team &team, typename Team::Item p, const Neighbour &k, Vec3<T> d, Vec3<T> velocity, T least,
-                          T friction, T weight, T active, T &moment) const {
+  template <class T>
+  LOAM_FN Vec3<T> impulse(Vec3<T> d, Vec3<T> velocity, T least, T friction, T weight, T active, int turn, T &moment) const {
     const T zero(0.0f), one(1.0f), h(substep);
     const T squared = dot(d, d);
     const auto coincident = squared < T(1e-10f) * least * least;
+    const Vec3<float> f = fallback_direction(turn);
     const T distance = square_root(squared);
     const T reciprocal = one / select(coincident, one, distance);
-    Vec3<T> n = reciprocal * d;
-    if (any(coincident)) n = select(coincident, team.of_pair(p, k, PartingDirection()), n);
+    const Vec3<T> n = select(coincident, Vec3<T>{T(f.x), T(f.y), T(f.z)}, reciprocal * d);
     const T violation = maximum(least - distance, zero) * active;
     const auto movable = weight > zero;
     const T change = select(movable, T(share) * violation / (h * select(movable, weight, one)), zero);
@@ -87,8 +82,8 @@ struct CorrectPositionsInTurn : CorrectPositions {
       const auto too_near = violated(d, least, Real(static_cast<float>(turn)), close);
       ++turn;
       if (!any(too_near)) continue;
-      const Vec3<Real> j = impulse(team, p, k, d, v - other.xyz(), least, friction, own.w + other.w,
-                                   select(too_near, one, zero), moment);
+      const Vec3<Real> j =
+          impulse(d, v - other.xyz(), least, friction, own.w + other.w, select(too_near, one, zero), turn, moment);
       const Vec3<Real> u = other.xyz() - other.w * j;
       team.set_neighbour_velocity(k, {u.x, u.y, u.z, other.w});
       v = v + own.w * j;
@@ -119,8 +114,8 @@ struct CorrectPositionsAtOnce : CorrectPositions {
       const auto too_near = violated(d, least, Real(static_cast<float>(turn)), close);
       ++turn;
       if (!any(too_near)) continue;
-      sum = sum + impulse(team, p, k, d, own.xyz() - other.xyz(), least, friction, own.w + other.w,
-                          select(too_near, one, zero), moment);
+      sum = sum +
+            impulse(d, own.xyz() - other.xyz(), least, friction, own.w + other.w, select(too_near, one, zero), turn, moment);
     }
     const Vec3<Real> v = own.xyz() + own.w * sum;
     team.set_own_row(p, corrected, {v.x, v.y, v.z, own.w});
