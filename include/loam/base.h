@@ -50,9 +50,8 @@ LOAM_API const char *loam_last_error(void);
 
 /* ------------------------------------------------------------------------------------------------------- ids --- */
 
-/* What lives in a world is named by 64-bit ids: a kind, a tag of the world, a generation and an index. 0 is the null id. Ids are
- * checked by every call: one whose object is gone, or of another kind or world, gives LOAM_ERROR_INVALID_HANDLE, never another
- * object. */
+/* What lives in a world is named by 64-bit ids: kind, world, generation and index. 0 is the null id. Ids are checked by every call:
+ * one whose object is gone, or of another kind or world, gives LOAM_ERROR_INVALID_HANDLE, never another object. */
 typedef uint64_t loam_material_id;
 typedef uint64_t loam_collider_id;
 

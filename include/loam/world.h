@@ -161,14 +161,13 @@ typedef struct loam_statistics {
 
   /* Of the last iteration. SCALAR: the root of the sum of (C + alpha~ lambda)^2 over the sum of C^2; small means that the iteration has settled, not
    * that the step is solved exactly. PROJECTED_TENSOR: the root of the sum of squared stresses that one more visit would change, over that of the
-   * stresses; small means that the step is solved. 0 where nothing is strained, or where it does not fit into single precision. */
+   * stresses; small means that the step is solved. 0 where nothing is strained, or where single precision overflows. */
   double residual;
 
   /* The stress that matter shows over the stress that its weight calls for, from the virial theorem along gravity:
    *   (sum of pair forces' moments - sum V0 tau : u u^T) / (sum m g . x - moment of the contact forces),  u the direction of gravity.
    * 1 in true equilibrium at rest. An unconverged solve passes on only part of the stress, so matter deforms as if its moduli were smaller by this
-   * factor: 2 means twice too soft. Meaningful only when nothing moves. 0 without gravity or contacts, or where it does not fit into single
-   * precision. */
+   * factor: 2 means twice too soft. Meaningful only at rest. 0 without gravity or contacts, or where single precision overflows. */
   double virial;
 
   double kinetic_energy; /* J */
