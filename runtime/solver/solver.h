@@ -241,16 +241,23 @@ template <class Executor> void Solver<Executor>::set_materials(const std::vector
     executor_.set(other_.materials.data() + spare_row_, spare, 0u);
     material_capacity_ = capacity;
   }
+  // Both copies or none: memory may be refused between them.
+  const auto reserve_both = [&](Array<float> &now, Array<float> &other, std::size_t count) {
+    Array<float> first = executor_.template array<float>(), second = executor_.template array<float>();
+    first.reserve(count);
+    second.reserve(count);
+    now.swap(first);
+    other.swap(second);
+  };
   if (history && !histories_in_use_) {
-    now_.histories.reserve(rows);
-    other_.histories.reserve(rows);
-    histories_in_use_ = true; // only now: memory may have been refused
+    reserve_both(now_.histories, other_.histories, rows);
+    executor_.set(now_.histories.data(), count_, 0.0f);
+    histories_in_use_ = true;
   }
   if (drift && !drifts_in_use_) {
-    now_.drifts.reserve(3 * rows);
-    other_.drifts.reserve(3 * rows);
     if (settings_.jacobi)
       for (Array<Row> &column : jacobi_drift_rows_) column.reserve(rows);
+    reserve_both(now_.drifts, other_.drifts, 3 * rows);
     executor_.set(now_.drifts.data(), 3 * count_, 0.0f);
     drifts_in_use_ = true;
   }
