@@ -175,8 +175,8 @@ typedef struct loam_statistics {
   double mean_speed;     /* m/s */
   double momentum[3];    /* kg m/s */
 
-  /* The least share of its Young's modulus that a material acted with in the step: with PROJECTED_TENSOR, elastic waves may cross 2 r an iteration in a
-   * substep, c <= 2 iterations r / substep; stiffer matter is softened to that (its yield stress stays), since an unconverged step would otherwise give back more
+  /* The least share of its Young's modulus that a material acted with in the step: with PROJECTED_TENSOR, elastic waves may cross r an iteration in a
+   * substep, c <= iterations r / substep; stiffer matter is softened to that (its yield stress stays), since an unconverged step would otherwise give back more
    * energy than it was given. 1: none was. For the full stiffness take shorter substeps or more iterations. */
   double stiffness_share;
 

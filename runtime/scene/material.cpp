@@ -161,7 +161,7 @@ void check_material(const loam_material_def &def) {
 
 double stiffness_share(const loam_material_def &def, double kernel_radius, double substep, std::uint32_t iterations) {
   const Moduli m = moduli_of(def);
-  const double speed = 2.0 * iterations * kernel_radius / substep;
+  const double speed = iterations * kernel_radius / substep;
   const double most = static_cast<double>(def.density) * speed * speed;
   return std::fmin(1.0, most / (m.lambda + 2 * m.mu));
 }

@@ -20,9 +20,9 @@ void check_material(const loam_material_def &def);
 // `stiffness_share`: of Young's modulus; stresses at yield stay.
 LawVariant make_law(const loam_material_def &def, double stiffness_share = 1);
 
-// The share of a material's stiffness that a substep can carry. Elastic waves cross c h / r particles in a substep, and impulses about two an
-// iteration; beyond that an unconverged step stores up to (c h / r)^2 times the energy of an impact, and gives it back. So c is bounded; matter is then softer, which
-// without the bound it would be too, for want of iterations, but wildly.
+// The share of a material's stiffness that a substep can carry. Elastic waves cross c h / r particles in a substep, and impulses about one an
+// iteration; beyond that an unconverged step stores up to (c h / r)^2 times the energy of an impact, and gives it back: bodies of rubber that hit hard burst.
+// So c is bounded; matter is then softer, which without the bound it would be too, for want of iterations, but wildly.
 double stiffness_share(const loam_material_def &def, double kernel_radius, double substep, std::uint32_t iterations);
 
 // K in Pa.

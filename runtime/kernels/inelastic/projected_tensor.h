@@ -46,7 +46,8 @@ LOAM_FN T best_along(const Mat3<T> &P, const Mat3<T> &R, const Mat3<T> &N, T dev
 template <bool NonAffine> struct ProjectedTensor {
   static constexpr bool non_affine = NonAffine;
   static constexpr int state_count = NonAffine ? 12 : 9;
-  float drift_stiffness; // stiffness / r^2; unused without NonAffine
+  static constexpr float greatest_small = 0.02f; // |h grad v| of a motion that counts as small
+  float drift_stiffness;                         // stiffness / r^2; unused without NonAffine
 
   // `state`: sigma row by row, then y.
   template <class Law, class Real>
@@ -88,8 +89,15 @@ template <bool NonAffine> struct ProjectedTensor {
     Mat3<Real> step = deviatoric * (R - full((twice_mu * reach * mean_step) * N_deviator));
     const Real diagonal = mean_step - deviatoric * mean;
     for (int i = 0; i < 3; ++i) step.m[i][i] = step.m[i][i] + diagonal;
-    // Where nothing yields the model is quadratic, and its minimum along the step is farther out where inertia differs by direction.
-    if constexpr (!Law::plastic) step = best_along(step, R, full(N), deviator_compliance, volume_compliance, reach) * step;
+    // Where nothing yields the model is quadratic, and its minimum along the step is farther out where inertia differs by direction. It is a model of small
+    // motions: as the substep comes to deform matter by more, the step goes back to the one that is safe. Otherwise bodies that hit hard would burst.
+    if constexpr (!Law::plastic) {
+      Real deformed = zero;
+      for (int i = 0; i < 9; ++i) deformed = deformed + c.H.m[i / 3][i % 3] * c.H.m[i / 3][i % 3];
+      const Real small = maximum(one - deformed * Real(1.0f / (greatest_small * greatest_small)), zero);
+      const Real theta = best_along(step, R, full(N), deviator_compliance, volume_compliance, reach);
+      step = (one + small * (theta - one)) * step;
+    }
     const Mat3<Real> relaxed_sigma = sigma + step;
 
     const Sym3<Real> relaxed_tau = symmetric_part(multiply_transposed(relaxed_sigma, D.gradient));
