@@ -15,6 +15,7 @@ INSTANTIATE_TEST_SUITE_P(Solvers, DegenerateStart, test::both_solvers(), test::s
 
 /* Matter as flat as that is pushed apart by position correction alone, at up to 0.75 r a substep. */
 TEST_P(DegenerateStart, MatterSquashedToAPlaneALineOrAPoint) {
+  test::shows("every law started as a plane, a line, a point: it finds room again");
   for (const loam_material_def &material : scenes::each_law())
     for (int dimensions = 0; dimensions < 3; ++dimensions) {
       scenes::Scene squashed = block(material, 4, 0.05f);
@@ -35,6 +36,7 @@ TEST_P(DegenerateStart, MatterSquashedToAPlaneALineOrAPoint) {
 }
 
 TEST_P(DegenerateStart, EveryParticleTwice) {
+  test::shows("a block in which every particle exists twice");
   const scenes::Scene sand = block(scenes::sand(), 6, 0.01f);
   const Outcome outcome = survive(HardCase(GetParam(), {sand, without_planes(sand)}));
   EXPECT_GT(outcome.lowest, 0.0025);
@@ -42,6 +44,7 @@ TEST_P(DegenerateStart, EveryParticleTwice) {
 }
 
 TEST_P(DegenerateStart, LoneParticlesAndPairsFallAndRest) {
+  test::shows("lone particles, pairs, and pairs a micrometre apart fall and lie still");
   scenes::Scene lone = block(scenes::sand(), 1, 0.05f);
   lone.positions.clear();
   for (int k = 0; k < 40; ++k) {
@@ -58,6 +61,7 @@ TEST_P(DegenerateStart, LoneParticlesAndPairsFallAndRest) {
 }
 
 TEST_P(DegenerateStart, InvertedMatterUnfoldsOrStaysButStaysFinite) {
+  test::shows("rubber thrown through itself at 18 m/s");
   // Rubber thrown through itself: the upper half falls faster than the lower half can give way.
   scenes::Scene rubber = block(scenes::rubber(), 7, 0.1f);
   for (std::size_t i = 0; i < rubber.positions.size(); i += 3)
@@ -68,6 +72,7 @@ TEST_P(DegenerateStart, InvertedMatterUnfoldsOrStaysButStaysFinite) {
 }
 
 TEST_P(DegenerateStart, AFillInsideASolidGroundComesOutSlowly) {
+  test::shows("sand filled in half under the ground comes out without a jump");
   HardCase hard(GetParam(), {block(scenes::sand(), 1, 1)}); // for its ground
   hard.prepare = [](scenes::World &world) {
     loam_fill_def def;
@@ -84,6 +89,7 @@ TEST_P(DegenerateStart, AFillInsideASolidGroundComesOutSlowly) {
 }
 
 TEST_P(DegenerateStart, AFillAcrossTheWallOfAMeshSettlesOnBothSides) {
+  test::shows("sand filled in across a wall settles on both sides");
   const meshes::Mesh box = meshes::box(0.05f, 0.05f, 0.05f);
   HardCase hard(GetParam(), {block(scenes::sand(), 1, 1)});
   hard.prepare = [&box](scenes::World &world) {

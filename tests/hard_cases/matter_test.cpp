@@ -14,6 +14,7 @@ class Matter : public test::OfASolver {};
 INSTANTIATE_TEST_SUITE_P(Solvers, Matter, test::both_solvers(), test::solver_name);
 
 TEST_P(Matter, StiffnessFromAHundredPascalToAGigapascalInOneScene) {
+  test::shows("1e2 to 1e9 Pa, stiff on soft on stiff");
   HardCase hard(GetParam());
   float height = 0;
   for (const float E : {1e2f, 1e9f, 1e4f, 1e7f, 1e3f, 1e8f}) { // stiff on soft on stiff
@@ -28,6 +29,7 @@ TEST_P(Matter, StiffnessFromAHundredPascalToAGigapascalInOneScene) {
 }
 
 TEST_P(Matter, SubstepsFromATenMicrosecondToASixtiethOfASecond) {
+  test::shows("substeps of 1e-5 to 1/60 s");
   for (const float substep : {1e-5f, 1e-4f, 1e-3f, 4e-3f, 1.0f / 60}) {
     for (const loam_material_def &material : {scenes::sand(), scenes::plasticine(), scenes::rubber()}) {
       HardCase hard(GetParam(), {block(material, 5, 0.01f)});
@@ -43,6 +45,7 @@ TEST_P(Matter, SubstepsFromATenMicrosecondToASixtiethOfASecond) {
 }
 
 TEST_P(Matter, ImpactAtAHundredMetresPerSecond) {
+  test::shows("sand, plasticine and rubber hit the ground at 100 m/s");
   for (const loam_material_def &material : {scenes::sand(), scenes::plasticine(), scenes::rubber(1e6f)}) {
     HardCase hard(GetParam(), {block(material, 5, 0.05f, 100)});
     hard.def.substeps = 16;
@@ -56,6 +59,7 @@ TEST_P(Matter, ImpactAtAHundredMetresPerSecond) {
 }
 
 TEST_P(Matter, AnImpactBeyondTheSpeedLimitIsSlowedDown) {
+  test::shows("100 m/s where a substep carries 9.6 m/s");
   HardCase hard(GetParam(), {block(scenes::sand(), 6, 0.05f, 100)});
   const Outcome outcome = survive(hard);
   EXPECT_LE(outcome.peak_speed, 0.01 / (1.0 / 120 / 8) * 1.0001);
@@ -63,6 +67,7 @@ TEST_P(Matter, AnImpactBeyondTheSpeedLimitIsSlowedDown) {
 }
 
 TEST_P(Matter, AllMaterialsMixedParticleByParticle) {
+  test::shows("sand, plasticine ten times as dense and stiff rubber, particle by particle");
   HardCase hard(GetParam(), {block(scenes::sand(), 7, 0.02f), block(scenes::plasticine(), 7, 0.02f),
                              block(scenes::rubber(1e7f), 7, 0.02f)});
   hard.parts[1].material.density = 1e4f;
@@ -85,6 +90,7 @@ TEST_P(Matter, AllMaterialsMixedParticleByParticle) {
 }
 
 TEST_P(Matter, MassesOneToAThousand) {
+  test::shows("a block a thousand times as dense dropped on sand");
   loam_material_def heavy = scenes::plasticine(), light = scenes::sand();
   heavy.density = 1e5f;
   light.density = 1e2f;
@@ -95,6 +101,7 @@ TEST_P(Matter, MassesOneToAThousand) {
 }
 
 TEST_P(Matter, GravityFlippedEveryFrame) {
+  test::shows("gravity of 30 m/s^2 up, down and aside in turn");
   HardCase hard(GetParam(), {block(scenes::sand(), 7, 0)});
   hard.each = [](scenes::World &world, int step) {
     const float up[3] = {0, 30, 0}, down[3] = {0, -30, 0}, aside[3] = {30, 0, 0};
@@ -106,6 +113,7 @@ TEST_P(Matter, GravityFlippedEveryFrame) {
 }
 
 TEST_P(Matter, HugeGravityPressesMatterFlatAndNotThrough) {
+  test::shows("gravity of 1e6 m/s^2: flat, but not through the ground");
   HardCase hard(GetParam(), {block(scenes::sand(), 6, 0)});
   hard.def.gravity[1] = -1e6f;
   const Outcome outcome = survive(hard);

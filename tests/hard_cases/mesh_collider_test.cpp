@@ -30,18 +30,21 @@ std::size_t below(const Outcome &outcome, float height) {
 }
 
 TEST_P(MeshCollider, AnOpenSheetHoldsTheHeap) {
+  test::shows("sand falls onto an open sheet");
   const Outcome outcome = survive(heap_on(meshes::sheet(0.3f, 5)));
   EXPECT_EQ(below(outcome, 0.2f), 0u);
   EXPECT_LT(outcome.statistics.mean_speed, 0.2);
 }
 
 TEST_P(MeshCollider, AThinPlateHoldsTheHeap) {
+  test::shows("onto a plate a thousandth of a kernel radius thick");
   const Outcome outcome = survive(heap_on(meshes::box(0.3f, 1e-5f, 0.3f))); // a thousandth of r
   EXPECT_EQ(below(outcome, 0.2f), 0u);
   EXPECT_LT(outcome.statistics.mean_speed, 0.2);
 }
 
 TEST_P(MeshCollider, SliversAMetreLongAndAHairWideHoldTheHeap) {
+  test::shows("onto needles a metre long and half a millimetre wide");
   Mesh fan; // a sheet made of needles
   constexpr int needles = 600;
   for (int k = 0; k <= needles; ++k) {
@@ -55,6 +58,7 @@ TEST_P(MeshCollider, SliversAMetreLongAndAHairWideHoldTheHeap) {
 }
 
 TEST_P(MeshCollider, DegenerateAndRepeatedTrianglesDoNoHarm) {
+  test::shows("onto a mesh with every triangle three times, and some without area");
   Mesh mesh = meshes::sheet(0.3f, 3);
   const Mesh once = mesh;
   mesh.append(once); // every triangle twice
@@ -69,6 +73,7 @@ TEST_P(MeshCollider, DegenerateAndRepeatedTrianglesDoNoHarm) {
 }
 
 TEST_P(MeshCollider, NonManifoldFinsHoldTheHeap) {
+  test::shows("onto a mesh with three triangles at an edge");
   Mesh mesh = meshes::sheet(0.3f, 4);
   for (std::uint32_t k = 0; k < 4; ++k) { // fins on inner edges, upward and downward
     const std::uint32_t a = 5 * k + 2, b = 5 * k + 7;
@@ -81,6 +86,7 @@ TEST_P(MeshCollider, NonManifoldFinsHoldTheHeap) {
 }
 
 TEST_P(MeshCollider, ASelfIntersectingMeshHoldsTheHeap) {
+  test::shows("onto bodies that run through each other");
   Mesh mesh = meshes::box(0.3f, 0.02f, 0.3f);
   mesh.append(meshes::box(0.02f, 0.05f, 0.3f)); // a ridge through the plate
   mesh.append(meshes::icosphere(0.03f, 1), 0.05f, 0.01f, 0);
@@ -90,6 +96,7 @@ TEST_P(MeshCollider, ASelfIntersectingMeshHoldsTheHeap) {
 }
 
 TEST_P(MeshCollider, ATriangleSmallerThanAParticleIsMetAndPassed) {
+  test::shows("a single triangle smaller than a particle");
   Mesh speck;
   speck.triangle(speck.vertex(0, 0, 0), speck.vertex(0, 0, 1e-3f), speck.vertex(1e-3f, 0, 0));
   HardCase hard = heap_on(speck);
@@ -100,6 +107,7 @@ TEST_P(MeshCollider, ATriangleSmallerThanAParticleIsMetAndPassed) {
 
 /* Shot at thirty metres a second at a closed surface from inside: nothing comes out. */
 TEST_P(MeshCollider, NothingLeavesAClosedMesh) {
+  test::shows("sand shot at the inside of a closed ball at up to 30 m/s: none comes out");
   const Mesh ball = meshes::icosphere(0.08f, 2);
   scenes::Scene sand = without_planes(block(scenes::sand(), 7, 0));
   for (std::size_t i = 0; i < sand.positions.size(); i += 3) {

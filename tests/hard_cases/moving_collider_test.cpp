@@ -17,6 +17,7 @@ INSTANTIATE_TEST_SUITE_P(Solvers, MovingCollider, test::both_solvers(), test::so
 const float upright[4] = {0, 0, 0, 1};
 
 TEST_P(MovingCollider, ABallTeleportedThroughAHeap) {
+  test::shows("a ball placed elsewhere in the heap in every frame pushes gently");
   const Mesh ball = meshes::icosphere(0.03f, 2);
   HardCase hard(GetParam(), {block(scenes::sand(), 8, 0)});
   loam_collider_id id = 0;
@@ -31,6 +32,7 @@ TEST_P(MovingCollider, ABallTeleportedThroughAHeap) {
 }
 
 TEST_P(MovingCollider, ABladeSpinningThroughAHeap) {
+  test::shows("a blade turning at 24 rad/s through a heap");
   const Mesh blade = meshes::box(0.08f, 0.01f, 0.004f);
   HardCase hard(GetParam(), {block(scenes::sand(), 8, 0)});
   loam_collider_id id = 0;
@@ -47,6 +49,7 @@ TEST_P(MovingCollider, ABladeSpinningThroughAHeap) {
 }
 
 TEST_P(MovingCollider, HalfATurnAndAMetreInOneStep) {
+  test::shows("a plate moved by a metre and turned over within one step");
   const Mesh plate = meshes::box(0.2f, 0.002f, 0.2f);
   HardCase hard(GetParam(), {block(scenes::sand(), 7, 0)});
   loam_collider_id id = 0;
@@ -62,6 +65,7 @@ TEST_P(MovingCollider, HalfATurnAndAMetreInOneStep) {
 }
 
 TEST_P(MovingCollider, APistonPressesSandAgainstTheGroundAndLosesNone) {
+  test::shows("a piston pressing sand against the ground: none gets through");
   const Mesh plate = meshes::box(0.2f, 0.01f, 0.2f);
   HardCase hard(GetParam(), {block(scenes::sand(), 6, 0)});
   loam_collider_id id = 0;
@@ -82,6 +86,7 @@ TEST_P(MovingCollider, APistonPressesSandAgainstTheGroundAndLosesNone) {
 
 /* A small heap in the upper bulb of an hourglass, poured and left alone. */
 TEST_P(MovingCollider, APileInAClosedMeshComesToRest) {
+  test::shows("sand in an hourglass that is closed, for five seconds: at rest");
   const Mesh glass = meshes::hourglass(0.05f, 0.004f); // a neck under the stand-off: at most single grains squeeze through
   HardCase hard(GetParam());
   hard.step_seconds = 1.0f / 60;
@@ -108,7 +113,7 @@ TEST_P(MovingCollider, APileInAClosedMeshComesToRest) {
   const float at[3] = {0, 0, 0};
   EXPECT_GT(outcome.end.count(), 150u);
   EXPECT_EQ(test::outside(outcome.end.positions, glass, at), 0u);
-  RecordProperty("mean_speed", std::to_string(outcome.statistics.mean_speed));
+  test::record(outcome, 5);
   if (!hooks::short_run()) {
     EXPECT_LT(outcome.statistics.mean_speed, 0.05 * 0.01); // 5 % of r a second
   }
