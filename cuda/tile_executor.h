@@ -37,7 +37,7 @@ public:
     order_.reserve(particle_capacity, material_count, record_size);
   }
   // None: lanes without a particle do nothing.
-  static std::size_t spare_rows(int) { return 0; }
+  static std::size_t spare_rows() { return 0; }
 
   template <class Body> void session(Body &&body) { machine_.session(body); }
 

@@ -35,8 +35,8 @@ public:
     order_.reserve(particle_capacity, material_count, record_size);
   }
   // Rows that the particle arrays need beyond the particles.
-  static std::size_t spare_rows(int material_count) {
-    return static_cast<std::size_t>(27 * material_count * VisitOrder::spare_rows_per_pass) + 16;
+  std::size_t spare_rows() const {
+    return static_cast<std::size_t>(workers_.thread_count()) * VisitOrder::spare_rows_per_part + 16;
   }
 
   template <class Body> void session(Body &&body) { workers_.session(body); }

@@ -194,7 +194,10 @@ void VisitOrder::fill_group(const CellTable &table, int group, int pass_index) {
   const Entry *entry = entries_.data() + group_first_entry_[g], *const end = entries_.data() + group_first_entry_[g + 1];
   for (std::size_t lane = 0; lane < W; ++lane) {
     if (entry == end) {
-      const int spare = table.spare_rows + pass_index * spare_rows_per_pass + static_cast<int>(lane);
+      // Passes are worked through in turn, and of the groups of a part only one that is alone has lanes to spare.
+      unsigned part = 0;
+      while (part_begin(pass_index, part + 1) <= group) ++part;
+      const int spare = table.spare_rows + static_cast<int>(part) * spare_rows_per_part + static_cast<int>(lane);
       for (int b = 0; b < batches; ++b) ids_[static_cast<std::size_t>(first_batch + b) * W + lane] = spare;
       continue;
     }

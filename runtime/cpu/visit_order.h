@@ -63,7 +63,7 @@ public:
   int group_of_part(int i) const { return group_of_part_[static_cast<std::size_t>(i)]; }
   int group_begin(int group) const { return group_first_batch_[static_cast<std::size_t>(group)]; }
   // Rows beyond the particles that idle lanes may write.
-  static constexpr int spare_rows_per_pass = 16;
+  static constexpr int spare_rows_per_part = 16;
 
   std::size_t list_bytes() const { return indices_.bytes() + gradients_.bytes(); }
   std::size_t record_bytes() const { return records_.bytes(); }

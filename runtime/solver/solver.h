@@ -203,10 +203,10 @@ template <class Executor> void Solver<Executor>::reserve_storage(ParticleStorage
 
 template <class Executor> void Solver<Executor>::set_materials(const std::vector<SolverMaterial> &materials) {
   const int wanted = std::max(1, static_cast<int>(materials.size()));
-  // Spare rows and passes are per material: room for a few more at a time.
+  // Passes are per material: room for a few more at a time.
   const bool more = wanted > material_capacity_;
   const int capacity = more ? std::max(wanted, std::min(2 * material_capacity_, 4096)) : material_capacity_;
-  const std::size_t rows = spare_row_ + Executor::spare_rows(capacity);
+  const std::size_t rows = spare_row_ + executor_.spare_rows();
   bool history = histories_in_use_, drift = drifts_in_use_;
   for (const SolverMaterial &material : materials)
     std::visit(
