@@ -118,9 +118,12 @@ public:
     for_each_group([&](int group) { launch(&stage, pairs, order_.group_begin(group), order_.group_begin(group + 1)); });
   }
   template <class Stage> void for_each_particle_of(int material, Row *velocities, const Stage &stage) {
-    for (const VisitOrder::Pass &pass : order_.passes())
-      if (pass.material == material)
-        over_batches(velocities, stage, order_.group_begin(pass.first_group), order_.group_begin(pass.last_group));
+    const CpuPairs pairs = order_.pairs(velocities);
+    const auto launch = table_->team[IndexOf<Stage, TeamStages>::value];
+    for_each_group([&](int group) {
+      if (order_.group_material(group) == material)
+        launch(&stage, pairs, order_.group_begin(group), order_.group_begin(group + 1));
+    });
   }
   // The passes in turn; within a pass, blocks at once and the particles of a block in turn.
   int pass_count() const { return static_cast<int>(order_.passes().size()); }
@@ -163,7 +166,7 @@ private:
       }
     });
   }
-  // All groups, each by the thread that has it in every stage.
+  // All groups, each by the thread that has it in every stage; never cut, for idle lanes read the particles that they stand in for.
   template <class F> void for_each_group(F &&function) {
     by_part(
         order_.group_count(), [&](unsigned part) { return order_.groups_of_part(part); },
@@ -173,12 +176,6 @@ private:
     const int per_chunk = std::max(least, count / (8 * static_cast<int>(workers_.thread_count())));
     workers_.loop((count + per_chunk - 1) / per_chunk,
                   [&](int c) { function(c * per_chunk, std::min(count, (c + 1) * per_chunk)); });
-  }
-  template <class Stage> void over_batches(Row *velocities, const Stage &stage, int first_batch, int last_batch) {
-    const CpuPairs pairs = order_.pairs(velocities);
-    const auto launch = table_->team[IndexOf<Stage, TeamStages>::value];
-    in_chunks(last_batch - first_batch, 16,
-              [&](int first, int last) { launch(&stage, pairs, first_batch + first, first_batch + last); });
   }
   CpuCandidates candidates(const CellTable &table) {
     return {table.x,        table.y,          table.z,

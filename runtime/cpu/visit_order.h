@@ -40,6 +40,9 @@ public:
   // a group share cache lines, so whoever fills them does well to go group by group.
   template <class F> void for_each_run_of_group(int group, F &&f) const;
   int group_count() const { return group_count_; }
+  int group_material(int group) const {
+    return passes_[static_cast<std::size_t>(group_pass_[static_cast<std::size_t>(group)])].material;
+  }
 
   CpuPairs pairs(Row *velocities);
   const int *slots() const { return slots_.data(); }
