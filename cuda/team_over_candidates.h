@@ -88,7 +88,11 @@ template <class TileType> struct TeamOverCandidates {
     return tile.length_squared(dx, dy, dz);
   }
   // Words of bits, one a lane.
-  LOAM_FN unsigned bits_below(Lane squared, float limit) const { return tile.bits_below(squared, limit); }
+  LOAM_FN unsigned others_below(const Packet &k, Lane squared, float limit) const {
+    return tile.bits_below(squared, limit) & other_bits(k);
+  }
+  LOAM_FN unsigned below(Lane squared, float limit, unsigned among) const { return tile.bits_below(squared, limit) & among; }
+  LOAM_FN unsigned owned(const Packet &k, unsigned among) const { return owned_bits(k) & among; }
   // Candidates of the run that are not the particle itself.
   LOAM_FN unsigned other_bits(const Packet &k) const {
     const unsigned left = static_cast<unsigned>(k.last - k.base), self = static_cast<unsigned>(particle - k.base);
@@ -123,7 +127,6 @@ template <class TileType> struct TeamOverCandidates {
     tile.append(list + ends.close_end, close, k.base);
     ends.close_end += count(close);
   }
-  LOAM_FN void close_list(const List &) {}
 };
 
 } // namespace loam

@@ -14,6 +14,7 @@
 //   work_bytes()                                                          memory that it holds for itself
 #pragma once
 
+#include "kernels/integration/measures.h"
 #include "schedule/schedule.h"
 #include "solver/cell_table.h"
 #include "solver/execution_settings.h"
@@ -62,12 +63,19 @@ public:
 
   // ---------------------------------------------------------------------------------------------- neighbours ---
 
-  void count_neighbours(const CellTable &table, const CountNeighbours &stage) {
-    machine_.search(stage, candidates(table), table.particle_count);
-  }
-  void arrange(const CellTable &table) { order_.arrange(table); }
-  void fill_neighbours(const CellTable &table, const FillNeighbours &stage) {
-    machine_.search(stage, candidates(table), order_.visit_count());
+  // Finds the lists and orders the visits. `check` is told the number of pairs before memory is taken for them, and may throw.
+  template <class Check>
+  void find_neighbours(const CellTable &table, const CandidateTest &test, int *neighbour_counts, int *close_counts,
+                       Check &&check, Schedule &schedule) {
+    const auto particles = static_cast<std::uint64_t>(table.particle_count);
+    machine_.search(CountNeighbours{test, neighbour_counts, close_counts}, candidates(table), table.particle_count);
+    const auto pairs = static_cast<std::uint64_t>(reduce(table.particle_count, SumCounts{neighbour_counts}));
+    check(pairs);
+    lap(schedule, schedule.search, pairs);
+    order_.arrange(table);
+    lap(schedule, schedule.order, particles);
+    machine_.search(FillNeighbours{test, neighbour_counts, close_counts}, candidates(table), order_.visit_count());
+    lap(schedule, schedule.search, 0);
   }
   std::size_t list_bytes() const { return order_.list_bytes(); }
   std::size_t record_bytes() const { return order_.record_bytes(); }

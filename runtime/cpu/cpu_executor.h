@@ -77,33 +77,31 @@ public:
 
   // ---------------------------------------------------------------------------------------------- neighbours ---
 
-  void count_neighbours(const CellTable &table, const CountNeighbours &stage) {
-    const CpuCandidates views = candidates(table);
-    const auto launch = table_->candidate[IndexOf<CountNeighbours, CandidateStages>::value];
-    in_chunks(table.particle_count, 512, [&](int first, int last) { launch(&stage, views, first, last); });
-  }
-
-  // Orders the visits and makes room for the lists. Throws Error before anything of the lists has changed.
-  void arrange(const CellTable &table) {
+  // Finds the lists and orders the visits. `check` is told the number of pairs before memory is taken for them, and may throw.
+  template <class Check>
+  void find_neighbours(const CellTable &table, const CandidateTest &test, int *neighbour_counts, int *close_counts,
+                       Check &&check, Schedule &schedule) {
     order_.arrange(workers_, table);
-    order_.make_room();
-  }
-  void fill_neighbours(const CellTable &table, const FillNeighbours &stage) {
-    CpuCandidates views = candidates(table);
-    const auto launch = table_->candidate[IndexOf<FillNeighbours, CandidateStages>::value];
-    if (table.only_material < 0) { // a run may hold particles of several groups
-      views.lists = order_.lists_of_all();
-      in_chunks(table.particle_count, 512, [&](int first, int last) { launch(&stage, views, first, last); });
-      in_chunks(order_.batch_count(), 16,
-                [&](int first, int last) { order_.interleave_lists(order_.lists_of_all(), first, last); });
-      return;
+    lap(schedule, schedule.order, static_cast<std::uint64_t>(table.particle_count));
+    const FindNeighbours stage = {test, neighbour_counts, close_counts};
+    const auto find_all = [&] {
+      order_.begin_lists();
+      for_each_group([&](int group) {
+        order_.make_lists(
+            group, Workers::current(),
+            [&](const int *particles, int count, FoundLists &lists) {
+              table_->search(stage, candidates(table, lists), particles, count);
+            },
+            table_->interleave);
+      });
+      check(static_cast<std::uint64_t>(order_.pair_count()));
+    };
+    find_all();
+    if (!order_.lists_are_complete()) {
+      order_.make_room();
+      find_all();
     }
-    for_each_group([&](int group) {
-      CpuCandidates own = views;
-      own.lists = order_.lists_of_group(group, Workers::current());
-      order_.for_each_run_of_group(group, [&](int first, int last) { launch(&stage, own, first, last); });
-      order_.interleave_lists(own.lists, order_.group_begin(group), order_.group_begin(group + 1));
-    });
+    lap(schedule, schedule.search, static_cast<std::uint64_t>(order_.pair_count()));
   }
   std::size_t list_bytes() const { return order_.list_bytes(); }
   std::size_t record_bytes() const { return order_.record_bytes(); }
@@ -177,10 +175,11 @@ private:
     workers_.loop((count + per_chunk - 1) / per_chunk,
                   [&](int c) { function(c * per_chunk, std::min(count, (c + 1) * per_chunk)); });
   }
-  CpuCandidates candidates(const CellTable &table) {
-    return {table.x,        table.y,          table.z,
-            table.keys,     table.starts,     {table.grid.size[0], table.grid.size[1], table.grid.size[2]},
-            order_.slots(), order_.offsets(), nullptr};
+  CpuCandidates candidates(const CellTable &table, FoundLists &lists) {
+    return {table.x,      table.y,
+            table.z,      table.keys,
+            table.starts, {table.grid.size[0], table.grid.size[1], table.grid.size[2]},
+            &lists,       order_.list_starts()};
   }
 
   HostAllocator allocator_;

@@ -1,5 +1,6 @@
 // All stages over neighbours, for one instruction set. The build compiles this file once for each, with LOAM_INSTRUCTION_SET naming the
 // namespace, LOAM_PACK_WIDTH the lanes, and the compiler flags to match. Nothing here may leave a symbol that another copy could share.
+#include "cpu/interleave_lists.h"
 #include "cpu/kernel_table.h"
 #include "cpu/team_over_candidates.h"
 #include "cpu/team_over_cells.h"
@@ -14,17 +15,21 @@ template <class Stage> void launch_team(const void *stage, const CpuPairs &pairs
   for (int b = first; b < last; ++b) kernel(team, b);
 }
 
-template <class Stage> void launch_candidates(const void *stage, const CpuCandidates &candidates, int first, int last) {
-  const Stage kernel = *static_cast<const Stage *>(stage);
+void launch_search(const FindNeighbours &stage, const CpuCandidates &candidates, const int *particles, int count) {
+  const FindNeighbours kernel = stage;
   TeamOverCandidates team(candidates);
-  for (int i = first; i < last; ++i) kernel(team, i);
+  for (int i = 0; i < count; ++i) kernel(team, particles[i]);
 }
 
-template <class... T, class... C> constexpr KernelTable make_table(TypeList<T...>, TypeList<C...>) {
-  return {LOAM_PACK_WIDTH, {&launch_team<T>...}, {&launch_candidates<C>...}};
+void launch_interleave(const CpuInterleaving &views, int first_batch, int last_batch) {
+  interleave_lists(views, first_batch, last_batch);
 }
 
-constexpr KernelTable table = make_table(TeamStages(), CandidateStages());
+template <class... T> constexpr KernelTable make_table(TypeList<T...>) {
+  return {LOAM_PACK_WIDTH, {&launch_team<T>...}, &launch_search, &launch_interleave};
+}
+
+constexpr KernelTable table = make_table(TeamStages());
 
 } // namespace
 

@@ -8,10 +8,13 @@ namespace loam {
 
 struct KernelTable {
   using TeamLaunch = void (*)(const void *stage, const CpuPairs &pairs, int first_batch, int last_batch);
-  using CandidateLaunch = void (*)(const void *stage, const CpuCandidates &candidates, int first, int last);
+  using SearchLaunch = void (*)(const FindNeighbours &stage, const CpuCandidates &candidates, const int *particles,
+                                int count);
+  using InterleaveLaunch = void (*)(const CpuInterleaving &views, int first_batch, int last_batch);
   int width;
   TeamLaunch team[Length<TeamStages>::value];
-  CandidateLaunch candidate[Length<CandidateStages>::value];
+  SearchLaunch search;
+  InterleaveLaunch interleave;
 };
 
 // Null where the instruction set is not part of this build or not of this machine. `instruction_set` is a LOAM_INSTRUCTION_SET_* other than

@@ -13,7 +13,8 @@ namespace loam::LOAM_INSTRUCTION_SET {
 struct TeamOverCandidates {
   using Lane = Pack;
   static constexpr int W = Pack::width;
-  static constexpr int buffer_size = 512; // about twice the usual number of candidates
+  static constexpr int buffer_size =
+      496; // about twice the usual number of candidates; the arrays' starts are no power of two apart
 
   CpuCandidates d;
   Pack x, y, z; // of the particle
@@ -30,11 +31,12 @@ struct TeamOverCandidates {
   int filled = 0;
   bool first_segment = false; // the buffer holds the first segment
   int next_run = 0, next_particle = 0;
-  // Where the particles of the run that holds the cell itself stand in the buffer: particle + own_shift, from own_begin to own_end.
-  int own_shift = 0, own_begin = 0, own_end = 0;
 
   LOAM_FN explicit TeamOverCandidates(const CpuCandidates &views) : d(views) {}
 
+  LOAM_FN static int wrapped(int coordinate, int size) {
+    return coordinate < 0 ? coordinate + size : coordinate >= size ? coordinate - size : coordinate;
+  }
   LOAM_FN void add_run(int from_cell, int to_cell) {
     const int first = d.starts[from_cell], last = d.starts[to_cell];
     if (first == last) return;
@@ -46,10 +48,10 @@ struct TeamOverCandidates {
     cell = c;
     run_count = 0;
     const int nx = d.size[0], ny = d.size[1], nz = d.size[2];
-    const int cz = c % nz, cy = c / nz % ny, cx = c / nz / ny;
+    const int column = c / nz, cz = c - column * nz, cx = column / ny, cy = column - cx * ny;
     for (int dx = -1; dx <= 1; ++dx)
       for (int dy = -1; dy <= 1; ++dy) {
-        const int row = ((cx + dx + nx) % nx * ny + (cy + dy + ny) % ny) * nz;
+        const int row = (wrapped(cx + dx, nx) * ny + wrapped(cy + dy, ny)) * nz;
         if (cz > 0 && cz < nz - 1) {
           add_run(row + cz - 1, row + cz + 2);
         } else if (cz == 0) {
@@ -67,18 +69,12 @@ struct TeamOverCandidates {
   // Copies a pack at a time; what runs over a run's end is overwritten by the next run, or by the far-away candidates that fill the last pack.
   LOAM_FN bool load_segment() {
     filled = 0;
-    own_begin = own_end = 0;
     while (next_run < run_count && filled + 2 * W <= buffer_size) {
       __builtin_memcpy(buffer_x + filled, d.x + next_particle, sizeof(float) * W);
       __builtin_memcpy(buffer_y + filled, d.y + next_particle, sizeof(float) * W);
       __builtin_memcpy(buffer_z + filled, d.z + next_particle, sizeof(float) * W);
-      for (int l = 0; l < W; ++l) buffer_index[filled + l] = next_particle + l;
+      store_sequence(buffer_index + filled, next_particle);
       const int rest = run_last[next_run] - next_particle, taken = rest < W ? rest : W;
-      if (particle >= run_first[next_run] && particle < run_last[next_run]) {
-        own_shift = filled - next_particle;
-        own_begin = own_end > own_begin ? own_begin : filled;
-        own_end = filled + taken;
-      }
       filled += taken;
       next_particle += W;
       if (rest <= W && ++next_run < run_count) next_particle = run_first[next_run];
@@ -123,47 +119,51 @@ struct TeamOverCandidates {
                dz = Pack::load(buffer_z + packet) - z;
     return dx * dx + (dy * dy + dz * dz);
   }
-  LOAM_FN unsigned bits_below(Pack squared, float limit) const { return mask_bits(squared < Pack(limit)); }
   // All but the particle itself.
-  LOAM_FN unsigned other_bits(int packet) const {
-    const int self = particle + own_shift;
-    const unsigned lane = static_cast<unsigned>(self - packet);
-    return self >= own_begin && self < own_end && lane < 32 ? ~(1u << lane) : ~0u;
+  LOAM_FN Mask others_below(int packet, Pack squared, float limit) const {
+    return others(buffer_index + packet, particle, squared < Pack(limit));
   }
+  LOAM_FN static Mask below(Pack squared, float limit, Mask among) { return both(squared < Pack(limit), among); }
   // Those whose close pair with the particle this particle owns.
-  LOAM_FN unsigned owned_bits(int packet) const { return owned_pairs(buffer_index + packet, particle); }
-  LOAM_FN int count(unsigned bits) const { return __builtin_popcount(bits); }
-  LOAM_FN void store(int *values, int i, int value) const { values[i] = value; }
+  LOAM_FN Mask owned(int packet, Mask among) const { return owned_pairs(buffer_index + packet, particle, among); }
 
-  // Filling: a particle's list is in two pieces here, far neighbours and close ones, each with room behind it for a pack too many. They are copied there
-  // without branches; joining them and interleaving them with the lists of the other lanes is a step of its own, see VisitOrder.
+  // A list is collected in two buffers, close neighbours and far ones, which one packet may overrun. Longer ones are only counted at first.
   struct List {
-    int *far_end, *close_end;
-    bool roomy;
+    int close, far;
+    int *end; // of a long one, while it is written
   };
-  LOAM_FN List open_list(int i, int, int close) const {
-    const int slot = d.slots[i], batch = slot / W, lane = slot % W;
-    const long first = d.offsets[batch], steps = d.offsets[batch + 1] - first;
-    int *const list = d.lists + 3 * (first * W + lane * steps);
-    return {list, list + 2 * steps, close + W <= steps};
+  static constexpr int close_limit = 128, far_limit = 256;
+  alignas(64) int close_buffer[close_limit + W], far_buffer[far_limit + W];
+
+  LOAM_FN static List begin_list() { return {0, 0, nullptr}; }
+  LOAM_FN void append(List &list, int packet, Mask near, Mask close) {
+    const int *const index = buffer_index + packet;
+    list.close += compress(index, close, close_buffer + (list.close < close_limit ? list.close : close_limit));
+    list.far += compress(index, both(near, opposite(close)), far_buffer + (list.far < far_limit ? list.far : far_limit));
   }
-  LOAM_FN int *append_one_by_one(int packet, unsigned bits, int *end) const {
-    for (; bits != 0; bits &= bits - 1) *end++ = buffer_index[packet + __builtin_ctz(bits)];
-    return end;
-  }
-  LOAM_FN void append(List &list, int packet, unsigned near, unsigned close) const {
-    const unsigned far = near & ~close;
-    if (list.roomy) {
-      compress(buffer_index + packet, far, list.far_end);
-      list.far_end += count(far);
-      compress(buffer_index + packet, close, list.close_end);
-      list.close_end += count(close);
-    } else {
-      list.far_end = append_one_by_one(packet, far, list.far_end);
-      list.close_end = append_one_by_one(packet, close, list.close_end);
+  // False if the list is long and there is room for it: then it follows by append_close() and append_far().
+  LOAM_FN bool end_list(List &list) const {
+    FoundLists &lists = *d.lists;
+    const int length = list.close + list.far;
+    lists.needed += length;
+    if (lists.used + length + W > lists.capacity) return true;
+    int *const to = lists.entries + lists.used;
+    d.list_starts[particle] = static_cast<int>(lists.used);
+    lists.used += length;
+    if (list.close > close_limit || list.far > far_limit) {
+      list.end = to;
+      return false;
     }
+    for (int k = 0; k < list.close; k += W) copy_pack(close_buffer + k, to + k);
+    for (int k = 0; k < list.far; k += W) copy_pack(far_buffer + k, to + list.close + k);
+    return true;
   }
-  LOAM_FN void close_list(const List &) const {}
+  LOAM_FN void append_close(List &list, int packet, Mask close) const {
+    list.end += compress(buffer_index + packet, close, list.end);
+  }
+  LOAM_FN void append_far(List &list, int packet, Mask near, Mask close) const {
+    list.end += compress(buffer_index + packet, both(near, opposite(close)), list.end);
+  }
 };
 
 } // namespace loam::LOAM_INSTRUCTION_SET

@@ -43,9 +43,9 @@ struct TeamOverCells {
   template <bool WithGradients> LOAM_FN Range<WithGradients> range(long first, long last) const {
     return {{d.indices + first * W, d.gradients + first * 3 * W}, {d.indices + last * W, d.gradients + last * 3 * W}};
   }
-  LOAM_FN Range<true> neighbours(int b) const { return range<true>(d.offsets[b], d.offsets[b + 1]); }
+  LOAM_FN Range<true> neighbours(int b) const { return range<true>(d.offsets[b], d.offsets[b] + d.steps[b]); }
   // For stages that do not look at gradients.
-  LOAM_FN Range<false> unweighted_neighbours(int b) const { return range<false>(d.offsets[b], d.offsets[b + 1]); }
+  LOAM_FN Range<false> unweighted_neighbours(int b) const { return range<false>(d.offsets[b], d.offsets[b] + d.steps[b]); }
   // Only the close ones, first in the list.
   LOAM_FN Range<false> close_neighbours(int b) const { return range<false>(d.offsets[b], d.offsets[b] + d.close_steps[b]); }
 

@@ -11,12 +11,13 @@ namespace loam {
 VisitOrder::VisitOrder(const HostAllocator &allocator, int width, unsigned threads)
     : width_(width), threads_(threads), entries_(allocator), group_first_batch_(allocator), group_first_entry_(allocator),
       group_pass_(allocator), group_of_part_(allocator), lane_loads_(allocator), lane_ranks_(allocator), ids_(allocator),
-      active_(allocator), offsets_(allocator), close_steps_(allocator), slots_(allocator), indices_(allocator),
-      gradients_(allocator), records_(allocator), scratch_(allocator) {}
+      active_(allocator), offsets_(allocator), step_counts_(allocator), close_steps_(allocator), list_starts_(allocator),
+      indices_(allocator), gradients_(allocator), records_(allocator), group_particles_(allocator), found_lists_(allocator) {
+}
 
 void VisitOrder::reserve(std::size_t particle_capacity, int material_count, int record_size) {
   record_size_ = record_size;
-  slots_.reserve(particle_capacity);
+  list_starts_.reserve(particle_capacity);
   const auto most_passes = static_cast<std::size_t>(27 * material_count);
   passes_.reserve(most_passes);
   pass_sizes_.resize(most_passes);
@@ -28,14 +29,15 @@ void VisitOrder::reserve(std::size_t particle_capacity, int material_count, int 
 std::size_t VisitOrder::order_bytes() const {
   return entries_.bytes() + group_first_batch_.bytes() + group_first_entry_.bytes() + group_pass_.bytes() +
          group_of_part_.bytes() + lane_loads_.bytes() + lane_ranks_.bytes() + ids_.bytes() + active_.bytes() +
-         offsets_.bytes() + close_steps_.bytes() + slots_.bytes() + scratch_.bytes();
+         offsets_.bytes() + step_counts_.bytes() + close_steps_.bytes() + list_starts_.bytes() + group_particles_.bytes() +
+         found_lists_.bytes();
 }
 
 namespace {
 
-// An eighth more than asked for, so that small changes of the scene do not take memory each time.
+// A little more than asked for, so that small changes of the scene do not take memory each time.
 template <class T> void grow(HostArray<T> &array, std::size_t count) {
-  if (count > array.capacity()) array.reserve(count + count / 8 + 64);
+  if (count > array.capacity()) array.reserve(count + count / 16 + 64);
 }
 
 // The least that a lane of a group has of the largest blocks. With more, lanes are of more equal length, but a group outgrows the cache. Measured.
@@ -182,13 +184,28 @@ void VisitOrder::fill_lanes(std::size_t part) {
   }
 }
 
-void VisitOrder::fill_group(const CellTable &table, int group, int pass_index) {
+// Block by block, lane by lane. Returns how many there are.
+int VisitOrder::list_particles(int group, int *particles) const {
+  const auto g = static_cast<std::size_t>(group);
+  int *end = particles;
+  for (int e = group_first_entry_[g]; e < group_first_entry_[g + 1]; ++e) {
+    const Entry &entry = entries_[static_cast<std::size_t>(e)];
+    for_each_run(table_, entry.block, [&](int first, int last) {
+      for (int i = first; i < last; ++i)
+        if (table_.only_material >= 0 || static_cast<int>(table_.materials[i]) == entry.material) *end++ = i;
+    });
+  }
+  return static_cast<int>(end - particles);
+}
+
+// Returns the number of pair steps of the group.
+std::int64_t VisitOrder::fill_group(int group, const int *particles) {
   const auto g = static_cast<std::size_t>(group);
   const int first_batch = group_first_batch_[g], batches = group_first_batch_[g + 1] - first_batch;
   const auto W = static_cast<std::size_t>(width_);
   for (int b = first_batch; b < first_batch + batches; ++b) {
     active_[static_cast<std::size_t>(b)] = 0;
-    offsets_[static_cast<std::size_t>(b)] = 0;
+    step_counts_[static_cast<std::size_t>(b)] = 0;
     close_steps_[static_cast<std::size_t>(b)] = 0;
   }
   const Entry *entry = entries_.data() + group_first_entry_[g], *const end = entries_.data() + group_first_entry_[g + 1];
@@ -196,109 +213,88 @@ void VisitOrder::fill_group(const CellTable &table, int group, int pass_index) {
     if (entry == end) {
       // Passes are worked through in turn, and of the groups of a part only one that is alone has lanes to spare.
       unsigned part = 0;
-      while (part_begin(pass_index, part + 1) <= group) ++part;
-      const int spare = table.spare_rows + static_cast<int>(part) * spare_rows_per_part + static_cast<int>(lane);
+      while (part_begin(group_pass_[g], part + 1) <= group) ++part;
+      const int spare = table_.spare_rows + static_cast<int>(part) * spare_rows_per_part + static_cast<int>(lane);
       for (int b = 0; b < batches; ++b) ids_[static_cast<std::size_t>(first_batch + b) * W + lane] = spare;
       continue;
     }
-    const Entry *const first = entry;
     int size = 0;
-    for (; entry != end && entry->lane == first->lane; ++entry) size += entry->size;
+    for (const int of_lane = entry->lane; entry != end && entry->lane == of_lane; ++entry) size += entry->size;
     // Stable counting sort by neighbour count, most first, so that lanes in lockstep have lists of like length. The order within a block does not depend
     // on the blocks that share its lane.
     constexpr int bins = 96;
     int places[bins + 1] = {};
-    const auto bin = [&](int i) { return bins - 1 - std::min(table.neighbour_counts[i], bins - 1); };
-    const auto for_each_particle = [&](auto &&f) {
-      for (const Entry *block = first; block != entry; ++block)
-        for_each_run(table, block->block, [&](int begin, int past) {
-          for (int i = begin; i < past; ++i)
-            if (table.only_material >= 0 || static_cast<int>(table.materials[i]) == block->material) f(i);
-        });
-    };
-    for_each_particle([&](int i) { ++places[bin(i) + 1]; });
+    const auto bin = [&](int i) { return bins - 1 - std::min(table_.neighbour_counts[i], bins - 1); };
+    for (int k = 0; k < size; ++k) ++places[bin(particles[k]) + 1];
     for (int k = 0; k < bins; ++k) places[k + 1] += places[k];
-    for_each_particle([&](int i) {
+    for (int k = 0; k < size; ++k) {
+      const int i = particles[k];
       const auto b = static_cast<std::size_t>(first_batch + places[bin(i)]++);
       ids_[b * W + lane] = i;
-      slots_[static_cast<std::size_t>(i)] = static_cast<int>(b * W + lane);
       ++active_[b];
-      offsets_[b] = std::max(offsets_[b], table.neighbour_counts[i]);
-      close_steps_[b] = std::max(close_steps_[b], table.close_counts[i]);
-    });
+      step_counts_[b] = std::max(step_counts_[b], table_.neighbour_counts[i]);
+      close_steps_[b] = std::max(close_steps_[b], table_.close_counts[i]);
+    }
+    particles += size;
     const int last = ids_[static_cast<std::size_t>(first_batch + size - 1) * W + lane];
     for (int b = size; b < batches; ++b) ids_[static_cast<std::size_t>(first_batch + b) * W + lane] = last;
   }
+  std::int64_t steps = 0;
+  for (int b = first_batch; b < first_batch + batches; ++b) steps += step_counts_[static_cast<std::size_t>(b)];
+  return steps;
 }
 
-std::int64_t VisitOrder::arrange(Workers &workers, const CellTable &table) {
+void VisitOrder::arrange(Workers &workers, const CellTable &table) {
   table_ = table;
   list_entries(table);
   make_groups(workers, table);
   const auto batches = static_cast<std::size_t>(batch_count_);
   grow(ids_, batches * static_cast<std::size_t>(width_));
   grow(active_, batches);
-  grow(offsets_, batches + 1);
+  grow(offsets_, batches);
+  grow(step_counts_, batches);
   grow(close_steps_, batches);
-
-  const int groups_per_chunk = std::max(1, group_count_ / 128);
-  workers.loop((group_count_ + groups_per_chunk - 1) / groups_per_chunk, [&](int chunk) {
-    const int last = std::min(group_count_, (chunk + 1) * groups_per_chunk);
-    for (int group = chunk * groups_per_chunk; group < last; ++group)
-      fill_group(table, group, group_pass_[static_cast<std::size_t>(group)]);
-  });
-
-  // The offsets hold the lengths of the batches' lists so far.
-  std::int64_t sum = 0;
-  for (std::size_t b = 0; b < batches; ++b) {
-    const int length = offsets_[b];
-    offsets_[b] = static_cast<int>(sum);
-    sum += length;
+  grow(records_, batches * static_cast<std::size_t>(record_size_) * static_cast<std::size_t>(width_));
+  int largest = 0;
+  for (int group = 0; group < group_count_; ++group)
+    largest = std::max(largest, (group_begin(group + 1) - group_begin(group)) * width_);
+  if (largest > largest_group_) {
+    largest += largest / 8;
+    group_particles_.reserve(static_cast<std::size_t>(largest) * threads_);
+    largest_group_ = largest;
   }
-  offsets_[batches] = static_cast<int>(sum);
-  steps_ = sum;
-  return sum;
+}
+
+void VisitOrder::begin_lists() {
+  step_count_ = 0;
+  pair_count_ = 0;
+  largest_lists_ = 0;
+}
+
+bool VisitOrder::lists_are_complete() const {
+  return step_count_ <= step_capacity() && largest_lists_ + width_ <= found_lists_size_;
 }
 
 void VisitOrder::make_room() {
-  const auto W = static_cast<std::size_t>(width_), steps = static_cast<std::size_t>(steps_);
+  const auto W = static_cast<std::size_t>(width_), steps = static_cast<std::size_t>(step_count_);
   // Prefetches may run past the end, which is harmless; loads do not.
-  grow(indices_, steps * W);
   grow(gradients_, steps * 3 * W);
-  if (table_.only_material >= 0) {
-    std::size_t most = 0;
-    for (int group = 0; group < group_count_; ++group)
-      most = std::max(most, static_cast<std::size_t>(offsets_[static_cast<std::size_t>(group_begin(group + 1))] -
-                                                     offsets_[static_cast<std::size_t>(group_begin(group))]));
-    scratch_size_ = std::max(scratch_size_, (3 * W * most + most / 8 + 63) / 64 * 64);
-    if (scratch_size_ * threads_ > scratch_.capacity()) scratch_.reserve(scratch_size_ * threads_);
+  grow(indices_, steps * W);
+  if (largest_lists_ + width_ > found_lists_size_) {
+    const std::int64_t size = (largest_lists_ + largest_lists_ / 8 + width_ + 15) / 16 * 16;
+    found_lists_.reserve(static_cast<std::size_t>(size) * threads_);
+    found_lists_size_ = size;
   }
-  grow(records_, static_cast<std::size_t>(batch_count_) * static_cast<std::size_t>(record_size_) * W);
 }
 
-void VisitOrder::interleave_lists(const int *lists, int first_batch, int last_batch) {
-  const auto W = static_cast<std::size_t>(width_);
-  for (auto batch = static_cast<std::size_t>(first_batch); batch < static_cast<std::size_t>(last_batch); ++batch) {
-    const int *ids = &ids_[batch * W];
-    const auto first = static_cast<std::size_t>(offsets_[batch]),
-               steps = static_cast<std::size_t>(offsets_[batch + 1]) - first;
-    const int *list = lists + 3 * first * W;
-    int *to = indices_.data() + first * W; // null where nothing has a neighbour
-    for (std::size_t lane = 0; lane < W; ++lane, list += 3 * steps) {
-      const bool idle = lane >= static_cast<std::size_t>(active_[batch]);
-      const auto total = idle ? 0 : static_cast<std::size_t>(table_.neighbour_counts[ids[lane]]);
-      const auto close = idle ? 0 : static_cast<std::size_t>(table_.close_counts[ids[lane]]);
-      const int *far = list - close;
-      for (std::size_t step = 0; step < close; ++step) to[step * W + lane] = list[2 * steps + step];
-      for (std::size_t step = close; step < total; ++step) to[step * W + lane] = far[step];
-      for (std::size_t step = total; step < steps; ++step) to[step * W + lane] = ids[lane];
-    }
-  }
+CpuInterleaving VisitOrder::interleaving(const FoundLists &lists) {
+  return {lists.entries,  list_starts_.data(), table_.neighbour_counts, ids_.data(),
+          active_.data(), offsets_.data(),     step_counts_.data(),     indices_.data()};
 }
 
 CpuPairs VisitOrder::pairs(Row *velocities) {
-  return {velocities,      ids_.data(),       active_.data(),  offsets_.data(), close_steps_.data(),
-          indices_.data(), gradients_.data(), records_.data(), record_size_};
+  return {velocities,          ids_.data(),     active_.data(),    offsets_.data(), step_counts_.data(),
+          close_steps_.data(), indices_.data(), gradients_.data(), records_.data(), record_size_};
 }
 
 } // namespace loam

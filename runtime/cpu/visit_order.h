@@ -1,6 +1,8 @@
 // The order in which the CPU visits particles, and the storage laid out in that order. See cpu_views.h for the layout.
 #pragma once
 
+#include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -25,35 +27,26 @@ public:
   // Room for a world's particles and their records of so many fields; called again when these become more.
   void reserve(std::size_t particle_capacity, int material_count, int record_size);
 
-  // Sorts out blocks, groups and batches, and gives each list its place. Returns the number of pair steps; make_room() must follow.
-  std::int64_t arrange(Workers &workers, const CellTable &table);
+  // Sorts out blocks, groups and batches. Lists follow, group by group, between begin_lists() and finish_lists().
+  void arrange(Workers &workers, const CellTable &table);
 
-  // Room for the lists and records of what was arranged. If memory is refused nothing has changed.
+  void begin_lists();
+  // For one group, by thread number `thread`: find(particles, count, lists) finds the lists of its particles, which are then ordered by their lengths, and
+  // interleave(views, first batch, last batch) makes the visits' lists of them. All that stays in the thread's cache.
+  template <class Find, class Interleave> void make_lists(int group, unsigned thread, Find &&find, Interleave &&interleave);
+  // False if there was not enough room. Then lists are not to be used but all counts are right, make_room() makes enough, and the lists must be made again.
+  // If memory is refused nothing has changed.
+  bool lists_are_complete() const;
+  std::int64_t pair_count() const { return pair_count_.load(std::memory_order_relaxed); }
   void make_room();
-
-  // From the lists as they were found to lists interleaved lane by lane, the particle itself behind each list's end. Writing them so at once would touch a
-  // cache line per neighbour.
-  // `lists` is what CpuCandidates::lists was.
-  void interleave_lists(const int *lists, int first_batch, int last_batch);
-
-  // Calls f(first, last) for the runs of particles, contiguous in memory, that make up a group, where all particles are of one material. The lists of
-  // a group share cache lines, so whoever fills them does well to go group by group.
-  template <class F> void for_each_run_of_group(int group, F &&f) const;
   int group_count() const { return group_count_; }
   int group_material(int group) const {
     return passes_[static_cast<std::size_t>(group_pass_[static_cast<std::size_t>(group)])].material;
   }
 
   CpuPairs pairs(Row *velocities);
-  const int *slots() const { return slots_.data(); }
-  const int *offsets() const { return offsets_.data(); }
-  // Where lists are put as they are found, see CpuCandidates: for all batches, the memory of the gradients, before those are computed; for one group, a
-  // scratch that stays in a thread's cache.
-  int *lists_of_all() { return reinterpret_cast<int *>(gradients_.data()); }
-  int *lists_of_group(int group, unsigned thread) {
-    return &scratch_[static_cast<std::size_t>(thread) * scratch_size_] -
-           3 * static_cast<std::ptrdiff_t>(width_) * offsets_[static_cast<std::size_t>(group_begin(group))];
-  }
+  // Where each particle's list begins in the thread's scratch; for who finds them.
+  int *list_starts() { return list_starts_.data(); }
   const std::vector<Pass> &passes() const { return passes_; }
   // The first group of a part, or the end of the last one. A pass is cut into a part for each thread, all passes near the same places: a thread that works
   // on the same part of all of them finds in its cache what it wrote.
@@ -88,14 +81,23 @@ private:
   void list_entries(const CellTable &table);
   void make_groups(Workers &workers, const CellTable &table);
   void fill_lanes(std::size_t part);
-  void fill_group(const CellTable &table, int group, int pass_index);
+  int list_particles(int group, int *particles) const;
+  std::int64_t fill_group(int group, const int *particles);
+  // Pair steps that there is room for.
+  std::int64_t step_capacity() const {
+    const auto W = static_cast<std::size_t>(width_);
+    return static_cast<std::int64_t>(std::min(indices_.capacity() / W, gradients_.capacity() / (3 * W)));
+  }
+  CpuInterleaving interleaving(const FoundLists &lists);
 
   int width_;
   int record_size_ = 0;
   unsigned threads_;
   CellTable table_{};
   int batch_count_ = 0;
-  std::int64_t steps_ = 0;
+  int largest_group_ = 0;                                   // particles
+  std::atomic<std::int64_t> step_count_{0}, pair_count_{0}; // of all lists so far
+  std::atomic<std::int64_t> largest_lists_{0};              // of a group, in entries
   std::vector<Pass> passes_;
   std::vector<Part> parts_; // of each pass: one a thread, and an end
   std::vector<int> groups_of_part_;
@@ -107,11 +109,11 @@ private:
   int group_count_ = 0;
   HostArray<std::uint64_t> lane_loads_; // of each group
   HostArray<int> lane_ranks_;
-  HostArray<int> ids_, active_, offsets_, close_steps_, slots_;
+  HostArray<int> ids_, active_, offsets_, step_counts_, close_steps_, list_starts_;
   HostArray<int> indices_;
   HostArray<float> gradients_, records_;
-  HostArray<int> scratch_; // of each thread
-  std::size_t scratch_size_ = 0;
+  HostArray<int> group_particles_, found_lists_; // of each thread
+  std::int64_t found_lists_size_ = 0;
 };
 
 // Calls f(first, last) for each run of particles in a block of cells: its columns along z.
@@ -126,10 +128,28 @@ template <class F> void for_each_run(const CellTable &table, int block, F &&f) {
     }
 }
 
-template <class F> void VisitOrder::for_each_run_of_group(int group, F &&f) const {
-  const auto g = static_cast<std::size_t>(group);
-  for (int e = group_first_entry_[g]; e < group_first_entry_[g + 1]; ++e)
-    for_each_run(table_, entries_[static_cast<std::size_t>(e)].block, f);
+template <class Find, class Interleave>
+void VisitOrder::make_lists(int group, unsigned thread, Find &&find, Interleave &&interleave) {
+  int *const particles = &group_particles_[static_cast<std::size_t>(thread) * static_cast<std::size_t>(largest_group_)];
+  FoundLists lists = {found_lists_.data() + static_cast<std::size_t>(thread) * static_cast<std::size_t>(found_lists_size_),
+                      found_lists_size_, 0, 0};
+  const int count = list_particles(group, particles);
+  find(particles, count, lists);
+  pair_count_.fetch_add(lists.needed, std::memory_order_relaxed);
+  std::int64_t most = largest_lists_.load(std::memory_order_relaxed);
+  while (lists.needed > most && !largest_lists_.compare_exchange_weak(most, lists.needed, std::memory_order_relaxed)) {
+  }
+
+  // Where a group's lists lie depends on which thread came first; what is in them does not.
+  const std::int64_t steps = fill_group(group, particles);
+  const std::int64_t first = step_count_.fetch_add(steps, std::memory_order_relaxed);
+  if (lists.used != lists.needed || first + steps > step_capacity()) return;
+  int offset = static_cast<int>(first);
+  for (int batch = group_begin(group); batch < group_begin(group + 1); ++batch) {
+    offsets_[static_cast<std::size_t>(batch)] = offset;
+    offset += step_counts_[static_cast<std::size_t>(batch)];
+  }
+  interleave(interleaving(lists), group_begin(group), group_begin(group + 1));
 }
 
 } // namespace loam

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <hwy/highway.h>
+#include <type_traits>
 
 #include "math/matrix.h"
 
@@ -68,26 +69,42 @@ LOAM_FN unsigned mask_bits(Mask m) {
   return word;
 }
 
-// For the neighbour search, on indices of the lanes' candidates. Bit l: the pair of `self` and index[l] belongs to self.
-LOAM_FN unsigned owned_pairs(const int *index, int self) {
+// For the neighbour search, on indices of the lanes' candidates: of `among` those that are not `self`.
+LOAM_FN Mask others(const int *index, int self, Mask among) {
+  const hn::RebindToSigned<FloatTag> tag;
+  const auto same = hn::Eq(hn::Load(tag, index), hn::Set(tag, self));
+  return {hn::AndNot(hn::RebindMask(FloatTag(), same), among.native)};
+}
+// Of `among` those whose pair with `self` belongs to self.
+LOAM_FN Mask owned_pairs(const int *index, int self, Mask among) {
   const hn::RebindToSigned<FloatTag> tag;
   const auto other = hn::Load(tag, index), own = hn::Set(tag, self), one = hn::Set(tag, 1);
   const auto even_sum = hn::Eq(hn::And(hn::Xor(other, own), one), hn::Zero(tag));
   const auto above = hn::Gt(other, own);
-  return ~mask_bits({hn::RebindMask(FloatTag(), hn::Xor(even_sum, above))});
+  return {hn::AndNot(hn::RebindMask(FloatTag(), hn::Xor(even_sum, above)), among.native)};
+}
+// A pack of them, from an aligned place to any.
+LOAM_FN void copy_pack(const int *from, int *to) {
+  const hn::RebindToSigned<FloatTag> tag;
+  hn::StoreU(hn::Load(tag, from), tag, to);
+  __asm__ volatile("" : : : "memory"); // or a loop of these becomes a call for copying memory, slower by far
+}
+// first, first + 1, ...
+LOAM_FN void store_sequence(int *to, int first) {
+  const hn::RebindToSigned<FloatTag> tag;
+  hn::StoreU(hn::Add(hn::Iota(tag, 0), hn::Set(tag, first)), tag, to);
 }
 
-// Copies the entries whose bits are set to `to`, one after the other; up to a pack of others behind them.
-LOAM_FN void compress(const int *from, unsigned bits, int *to) {
+// Copies the entries of the lanes in `mask` to `to`, one after the other; up to a pack of others behind them. Returns how many.
+LOAM_FN int compress(const int *from, Mask mask, int *to) {
   if constexpr (Pack::width == 16) {
-    // One store of the size of the load behind it: the word then stays in a register.
     const hn::RebindToSigned<FloatTag> tag;
-    std::uint8_t bytes[8] = {};
-    const auto word = static_cast<std::uint16_t>(bits);
-    __builtin_memcpy(bytes, &word, sizeof word);
-    hn::StoreU(hn::Compress(hn::Load(tag, from), hn::LoadMaskBits(tag, bytes)), tag, to);
+    hn::StoreU(hn::Compress(hn::Load(tag, from), hn::RebindMask(tag, mask.native)), tag, to);
+    return count(mask);
   } else { // without an instruction for it, one by one is faster
-    for (; bits != 0; bits &= bits - 1) *to++ = from[__builtin_ctz(bits)];
+    const int *const begin = to;
+    for (unsigned bits = mask_bits(mask); bits != 0; bits &= bits - 1) *to++ = from[__builtin_ctz(bits)];
+    return static_cast<int>(to - begin);
   }
 }
 
@@ -142,6 +159,26 @@ LOAM_FN void transpose_blocks(NativePack &a, NativePack &b, NativePack &c, Nativ
   d = join_high(ab_high, cd_high);
 }
 
+// Entries `first` to `first` + 3 of each lane's list, as bits.
+LOAM_FN Vec4<Pack> load_columns(const int *const *lists, int first) {
+  const auto load = [&](auto begin) {
+    const auto block = [&](int q) {
+      return hn::LoadU(BlockTag(), reinterpret_cast<const float *>(lists[begin.value + 4 * q] + first));
+    };
+#if LOAM_PACK_WIDTH == 16
+    const hn::CappedTag<float, 8> half;
+    return hn::Combine(FloatTag(), hn::Combine(half, block(3), block(2)), hn::Combine(half, block(1), block(0)));
+#elif LOAM_PACK_WIDTH == 8
+    return hn::Combine(FloatTag(), block(1), block(0));
+#else
+    return block(0);
+#endif
+  };
+  NativePack a = load(std::integral_constant<int, 0>()), b = load(std::integral_constant<int, 1>()),
+             c = load(std::integral_constant<int, 2>()), d = load(std::integral_constant<int, 3>());
+  transpose_blocks(a, b, c, d);
+  return {a, b, c, d};
+}
 LOAM_FN Vec4<Pack> load_rows(const Row *rows, const int *index) {
   const float *base = &rows->x;
   NativePack a = load_blocks<0>(base, index), b = load_blocks<1>(base, index), c = load_blocks<2>(base, index),

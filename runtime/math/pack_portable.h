@@ -63,17 +63,37 @@ LOAM_FN unsigned mask_bits(Mask m) {
 }
 
 // For the neighbour search, as in math/pack.h.
-LOAM_FN unsigned owned_pairs(const int *index, int self) {
-  unsigned bits = 0;
-  for (int l = 0; l < 4; ++l) bits |= (self < index[l]) == (((index[l] ^ self) & 1) == 0) ? 1u << l : 0u;
-  return bits;
-}
-
-LOAM_FN void compress(const int *from, unsigned bits, int *to) {
+LOAM_FN Mask others(const int *index, int self, Mask among) {
   for (int l = 0; l < 4; ++l)
-    if ((bits >> l & 1u) != 0) *to++ = from[l];
+    if (index[l] == self) among.native[l] = 0;
+  return among;
+}
+LOAM_FN Mask owned_pairs(const int *index, int self, Mask among) {
+  for (int l = 0; l < 4; ++l)
+    if ((self < index[l]) != (((index[l] ^ self) & 1) == 0)) among.native[l] = 0;
+  return among;
+}
+LOAM_FN void copy_pack(const int *from, int *to) {
+  for (int l = 0; l < 4; ++l) to[l] = from[l];
+}
+LOAM_FN void store_sequence(int *to, int first) {
+  for (int l = 0; l < 4; ++l) to[l] = first + l;
+}
+LOAM_FN int compress(const int *from, Mask mask, int *to) {
+  const int *const begin = to;
+  for (int l = 0; l < 4; ++l)
+    if (mask.native[l] != 0) *to++ = from[l];
+  return static_cast<int>(to - begin);
 }
 
+LOAM_FN Vec4<Pack> load_columns(const int *const *lists, int first) {
+  NativePack column[4];
+  for (int k = 0; k < 4; ++k) {
+    const NativeMask entries = {lists[0][first + k], lists[1][first + k], lists[2][first + k], lists[3][first + k]};
+    column[k] = reinterpret_cast<NativePack>(entries);
+  }
+  return {column[0], column[1], column[2], column[3]};
+}
 LOAM_FN Vec4<Pack> load_rows(const Row *rows, const int *index) {
   const Row &a = rows[index[0]], &b = rows[index[1]], &c = rows[index[2]], &d = rows[index[3]];
   return {NativePack{a.x, b.x, c.x, d.x}, NativePack{a.y, b.y, c.y, d.y}, NativePack{a.z, b.z, c.z, d.z},

@@ -108,24 +108,21 @@ template <class Executor> void Solver<Executor>::search_neighbours() {
   table_.neighbour_counts = neighbour_counts_.data();
   table_.close_counts = close_counts_.data();
   table_.spare_rows = static_cast<int>(spare_row_);
-  ex.count_neighbours(table_, CountNeighbours{test, neighbour_counts_.data(), close_counts_.data()});
-  const auto pairs = static_cast<std::uint64_t>(ex.reduce(count_, SumCounts{neighbour_counts_.data()}));
-  statistics_.pairs_peak = std::max(statistics_.pairs_peak, pairs);
-  if (settings_.pair_capacity != 0 && pairs > settings_.pair_capacity)
-    throw Error(LOAM_ERROR_CAPACITY,
-                format("the particles have %llu neighbour pairs; pair_capacity is %llu and would have to be that many",
-                       static_cast<unsigned long long>(pairs), static_cast<unsigned long long>(settings_.pair_capacity)));
-  if (pairs > 1500000000ull)
-    throw Error(LOAM_ERROR_CAPACITY,
-                format("the particles have %llu neighbour pairs, more than the 1500000000 that a world can hold: are many "
-                       "of them in one place, or is kernel_radius too large?",
-                       static_cast<unsigned long long>(pairs)));
-  pairs_ = pairs;
-  lap(schedule_.search, particles());
-  ex.arrange(table_);
-  lap(schedule_.order, particles());
-  ex.fill_neighbours(table_, FillNeighbours{test, neighbour_counts_.data(), close_counts_.data()});
-  lap(schedule_.search, pairs_);
+  const auto check = [&](std::uint64_t pairs) {
+    const std::uint64_t most = 1500000000ull;
+    statistics_.pairs_peak = std::max(statistics_.pairs_peak, pairs);
+    if (settings_.pair_capacity != 0 && pairs > settings_.pair_capacity)
+      throw Error(LOAM_ERROR_CAPACITY,
+                  format("the particles have %llu neighbour pairs; pair_capacity is %llu and would have to be that many",
+                         static_cast<unsigned long long>(pairs), static_cast<unsigned long long>(settings_.pair_capacity)));
+    if (pairs > most)
+      throw Error(LOAM_ERROR_CAPACITY,
+                  format("the particles have %llu neighbour pairs, more than the %llu that a world can hold: are many of "
+                         "them in one place, or is kernel_radius too large?",
+                         static_cast<unsigned long long>(pairs), static_cast<unsigned long long>(most)));
+    pairs_ = pairs;
+  };
+  ex.find_neighbours(table_, test, neighbour_counts_.data(), close_counts_.data(), check, schedule_);
 
   const auto gradients = [&](auto non_affine, const Meetings &meetings) {
     return ComputeGradients<non_affine.value>{now_.positions.data(),
@@ -268,17 +265,16 @@ template <class Executor> void Solver<Executor>::measure(const Vec3<float> &grav
     support = executor_.reduce(contact_count_,
                                ContactMoment{contacts_.data(), now_.positions.data(), now_.velocities.data(), up_}) /
               static_cast<double>(h_);
-  const MotionMeasure::Value motion =
-      executor_.reduce(count_, MotionMeasure{now_.positions.data(), now_.velocities.data(), now_.strains.data(), gravity});
-  const double weight = motion.weight_moment - support;
+  const double moment = executor_.reduce(count_, WeightMoment{now_.positions.data(), now_.velocities.data(), gravity});
+  const double weight = moment - support;
   const double stress = sums.term[ConstraintTerms::pair_moment] - sums.term[ConstraintTerms::stress_moment];
   virial_moment_ = length(gravity) > 0.0f && contact_count_ > 0 && std::abs(weight) > 0 ? stress / weight : 0;
   lap(schedule_.statistics, particles());
 }
 
 template <class Executor> void Solver<Executor>::finish_statistics(const StepInput &input) {
-  const MotionMeasure::Value motion = executor_.reduce(
-      count_, MotionMeasure{now_.positions.data(), now_.velocities.data(), now_.strains.data(), input.gravity});
+  const MotionMeasure::Value motion =
+      executor_.reduce(count_, MotionMeasure{now_.positions.data(), now_.velocities.data(), now_.strains.data()});
   statistics_.particles = particles();
   statistics_.contacts =
       contact_count_ > 0 ? static_cast<std::uint64_t>(executor_.reduce(contact_count_, SumPlanes{contacts_.data()})) : 0;

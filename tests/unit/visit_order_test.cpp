@@ -2,74 +2,31 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <map>
-#include <random>
 #include <set>
 #include <vector>
 
 #include "cpu/visit_order.h"
 #include "kernels/inelastic/record.h"
-#include "kernels/neighbours/sort_stages.h"
+#include "sorted_particles.h"
 
 namespace loam {
 namespace {
 
-constexpr float r = 0.01f;
+using test::r;
+using test::SortedParticles;
 
-/* Random particles sorted by cell, with their true neighbour counts. */
-struct SortedParticles {
-  std::vector<float> x, y, z;
-  std::vector<std::uint32_t> keys, materials;
-  std::vector<int> starts, neighbour_counts, close_counts;
-  std::vector<std::vector<int>> neighbours;
-  CellTable table{};
-
-  SortedParticles(int count, Colouring colouring, int material_count, float extent) {
-    const CellGrid grid = make_grid(colouring, extent);
-    std::mt19937 random(3);
-    std::vector<Row> rows;
-    for (int i = 0; i < count; ++i) {
-      const auto next = [&] { return extent * float(random()) * 0x1p-32f; };
-      const float a = next(), b = next(), c = next();
-      rows.push_back({a, b * b / extent, c, 1}); // denser at one side, so that cells differ in size
+/* With counts alone: the lists themselves do not matter to the order. */
+void arrange(VisitOrder &order, Workers &workers, const SortedParticles &particles) {
+  const auto find = [&](const int *list, int count, FoundLists &lists) {
+    for (int k = 0; k < count; ++k) {
+      const int length = particles.neighbour_counts[std::size_t(list[k])];
+      lists.needed += length;
+      if (lists.used + length <= lists.capacity) lists.used += length;
     }
-    const auto cell = [&](const Row &row) { return grid.index(xyz(row)); };
-    std::stable_sort(rows.begin(), rows.end(), [&](const Row &a, const Row &b) { return cell(a) < cell(b); });
-    starts.resize(std::size_t(grid.cell_count()) + 1);
-    for (const Row &row : rows) {
-      x.push_back(row.x);
-      y.push_back(row.y);
-      z.push_back(row.z);
-      keys.push_back(std::uint32_t(cell(row)));
-      materials.push_back(random() % unsigned(material_count));
-    }
-    for (int i = 0; i < count; ++i) MarkCells{keys.data(), starts.data(), count, grid.cell_count()}(i);
-    neighbours.resize(rows.size());
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      for (std::size_t j = 0; j < rows.size(); ++j)
-        if (i != j && length(xyz(rows[i]) - xyz(rows[j])) < 2 * r) neighbours[i].push_back(int(j));
-    for (const std::vector<int> &list : neighbours) neighbour_counts.push_back(int(list.size()));
-    close_counts.assign(rows.size(), 0);
-    table.grid = grid;
-    table.colouring = colouring;
-    table.particle_count = table.spare_rows = count;
-    table.material_count = material_count;
-    table.only_material = material_count == 1 ? 0 : -1;
-    table.keys = keys.data();
-    table.starts = starts.data();
-    table.x = x.data();
-    table.y = y.data();
-    table.z = z.data();
-    table.materials = materials.data();
-    table.neighbour_counts = neighbour_counts.data();
-    table.close_counts = close_counts.data();
-  }
-  static CellGrid make_grid(Colouring colouring, float extent) {
-    CellGrid grid = {{0, 0, 0}, {0, 0, 0}, 1 / (2 * r * 1.0001f)};
-    const int cells = int(extent * grid.inverse_cell) + 1;
-    for (int &size : grid.size) size = (cells + colouring.period() - 1) / colouring.period() * colouring.period();
-    return grid;
-  }
-};
+  };
+  test::make_all_lists(order, workers, particles.table, find, [](const CpuInterleaving &, int, int) {});
+  EXPECT_TRUE(order.lists_are_complete());
+}
 
 /* Which lane of which group visits each particle. */
 struct Visits {
@@ -102,8 +59,7 @@ TEST_P(VisitOrderOf, VisitsEachOnceAndNeverTwoThatShareAParticle) {
   Workers workers(2, {});
   VisitOrder order(allocator, width, workers.thread_count());
   order.reserve(particles.x.size(), materials, Record::field_count);
-  const std::int64_t steps = order.arrange(workers, particles.table);
-  order.make_room();
+  arrange(order, workers, particles);
 
   const std::vector<Visits> visits = visits_of(particles, order, width);
   for (std::size_t i = 0; i < visits.size(); ++i) {
@@ -114,14 +70,22 @@ TEST_P(VisitOrderOf, VisitsEachOnceAndNeverTwoThatShareAParticle) {
   std::int64_t active = 0;
   for (int batch = 0; batch < order.batch_count(); ++batch) active += order.pairs(nullptr).active[batch];
   EXPECT_EQ(active, std::int64_t(visits.size()));
-  // Room for every list.
+  // Room for every list, and for each its own.
   const CpuPairs pairs = order.pairs(nullptr);
-  EXPECT_EQ(pairs.offsets[order.batch_count()], steps);
-  for (std::size_t i = 0; i < visits.size(); ++i) {
-    const int batch = order.slots()[i] / width;
-    EXPECT_EQ(pairs.ids[order.slots()[i]], int(i));
-    EXPECT_GE(pairs.offsets[batch + 1] - pairs.offsets[batch], particles.neighbour_counts[i]);
+  std::map<int, int> ends; // by where they begin
+  for (int batch = 0; batch < order.batch_count(); ++batch) {
+    for (int lane = 0; lane < pairs.active[batch]; ++lane)
+      EXPECT_GE(pairs.steps[batch], particles.neighbour_counts[std::size_t(pairs.ids[batch * width + lane])]);
+    if (pairs.steps[batch] > 0) {
+      EXPECT_TRUE(ends.emplace(pairs.offsets[batch], pairs.offsets[batch] + pairs.steps[batch]).second);
+    }
   }
+  int free = 0;
+  for (const auto &[begin, end] : ends) {
+    EXPECT_GE(begin, free);
+    free = end;
+  }
+  EXPECT_LE(std::size_t(free) * std::size_t(width) * 4 * sizeof(int), order.list_bytes());
   // A visit writes the particle and its neighbours. Within a pass, two visits of different chains (another group, or another lane) may run at
   // once: they must not write the same particle.
   std::vector<std::set<std::pair<int, std::pair<int, int>>>> writers(visits.size());
@@ -146,8 +110,7 @@ std::map<int, std::vector<int>> visits_by_block(const SortedParticles &particles
   Workers workers(threads, {});
   VisitOrder order(allocator, width, threads);
   order.reserve(particles.x.size(), 1, Record::field_count);
-  order.arrange(workers, particles.table);
-  order.make_room();
+  arrange(order, workers, particles);
   const CpuPairs pairs = order.pairs(nullptr);
   const int w = particles.table.colouring.block_width, *size = particles.table.grid.size;
   std::map<int, std::vector<int>> blocks;
@@ -174,8 +137,7 @@ TEST(VisitOrder, GivesEachThreadItsShareOfEveryPassInOnePlace) {
   Workers workers(2, {});
   VisitOrder order(allocator, width, 2);
   order.reserve(particles.x.size(), 1, Record::field_count);
-  order.arrange(workers, particles.table);
-  order.make_room();
+  arrange(order, workers, particles);
   const CpuPairs pairs = order.pairs(nullptr);
   std::vector<int> times(std::size_t(order.passes().back().last_group));
   for (unsigned part = 0; part < 2; ++part)

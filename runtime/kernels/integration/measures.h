@@ -19,16 +19,15 @@ struct SumCounts {
 
 struct MotionMeasure {
   struct Value {
-    double kinetic_energy, speed_sum, momentum[3], weight_moment;
+    double kinetic_energy, speed_sum, momentum[3];
     float max_speed;
     long long non_finite;
   };
   const Row *positions;
   const Row *velocities;
   const float *strains;
-  Vec3<float> gravity;
 
-  LOAM_FN static Value identity() { return {0, 0, {0, 0, 0}, 0, 0, 0}; }
+  LOAM_FN static Value identity() { return {0, 0, {0, 0, 0}, 0, 0}; }
   LOAM_FN Value operator()(int i) const {
     Value value = identity();
     const Row v = velocities[i], x = positions[i];
@@ -47,8 +46,6 @@ struct MotionMeasure {
       value.momentum[0] = mass * v.x;
       value.momentum[1] = mass * v.y;
       value.momentum[2] = mass * v.z;
-      value.weight_moment = 0.0 - mass * (static_cast<double>(gravity.x) * x.x + static_cast<double>(gravity.y) * x.y +
-                                          static_cast<double>(gravity.z) * x.z);
     }
     return value;
   }
@@ -56,10 +53,27 @@ struct MotionMeasure {
     return {a.kinetic_energy + b.kinetic_energy,
             a.speed_sum + b.speed_sum,
             {a.momentum[0] + b.momentum[0], a.momentum[1] + b.momentum[1], a.momentum[2] + b.momentum[2]},
-            a.weight_moment + b.weight_moment,
             maximum(a.max_speed, b.max_speed),
             a.non_finite + b.non_finite};
   }
+};
+
+// The moment of the weight about the origin, along gravity.
+struct WeightMoment {
+  using Value = double;
+  const Row *positions;
+  const Row *velocities;
+  Vec3<float> gravity;
+  LOAM_FN static Value identity() { return 0; }
+  LOAM_FN Value operator()(int i) const {
+    const Row x = positions[i];
+    const float w = velocities[i].w;
+    if (!(w > 0.0f) || !is_finite(xyz(x))) return 0;
+    return (0.0 - (static_cast<double>(gravity.x) * x.x + static_cast<double>(gravity.y) * x.y +
+                   static_cast<double>(gravity.z) * x.z)) /
+           w;
+  }
+  LOAM_FN static Value combine(Value a, Value b) { return a + b; }
 };
 
 // The moment of the contact forces about the origin, along `up`: sum of (f . up)(x . up), times the substep.

@@ -1,7 +1,7 @@
-// Neighbour search, in two passes over the candidates of the 27 cells around a particle: count, then (when the lists have their places)
-// fill. Nothing is written before it is known that it fits.
+// Neighbour search among the candidates of the 27 cells around a particle. Where lists are written to their places at once it takes two passes: count, then
+// (when the lists have their places) fill. Where a cache holds the lists of a while it takes one: FindNeighbours.
 //
-// A team tests a packet of candidates at once, one per lane; what it found comes as a word of bits, one per lane.
+// A team tests a packet of candidates at once, one per lane; what it found comes as a set of lanes.
 //
 // Close pairs, which position correction looks at, stand first in a list. In turn-by-turn solving each close pair has one owner: the lower
 // index where the indices' sum is even, the higher one where it is odd, which spreads the work evenly.
@@ -16,15 +16,13 @@ struct CandidateTest {
   float close_squared; // 0: no position correction
   bool shared;         // close pairs stand in both lists
 
-  struct Found {
-    unsigned near, close;
-  };
-  template <class Team, class K> LOAM_FN Found operator()(Team &team, const K &packet) const {
+  template <class Lanes> struct Found { Lanes near, close; };
+  // Without branches: what a packet finds is hard to predict.
+  template <class Team, class K> LOAM_FN auto operator()(Team &team, const K &packet) const {
     const auto squared = team.distance_squared(packet);
-    // Without branches: what a packet finds is hard to predict.
-    const unsigned near = team.bits_below(squared, support_squared) & team.other_bits(packet);
-    const unsigned owned = shared ? ~0u : team.owned_bits(packet);
-    return {near, near & owned & team.bits_below(squared, close_squared)};
+    const auto near = team.others_below(packet, squared, support_squared);
+    const auto close = team.below(squared, close_squared, near);
+    return Found<decltype(team.below(squared, close_squared, near))>{near, shared ? close : team.owned(packet, close)};
   }
 };
 
@@ -36,7 +34,7 @@ struct CountNeighbours {
   template <class Team> LOAM_FN void operator()(Team &team, int i) const {
     int total = 0, close = 0;
     for (auto packet : team.candidates(i)) {
-      const CandidateTest::Found found = test(team, packet);
+      const auto found = test(team, packet);
       total += team.count(found.near);
       close += team.count(found.close);
     }
@@ -53,10 +51,33 @@ struct FillNeighbours {
   template <class Team> LOAM_FN void operator()(Team &team, int i) const {
     auto list = team.open_list(i, neighbour_counts[i], close_counts[i]);
     for (auto packet : team.candidates(i)) {
-      const CandidateTest::Found found = test(team, packet);
+      const auto found = test(team, packet);
       team.append(list, packet, found.near, found.close);
     }
-    team.close_list(list);
+  }
+};
+
+// Both at once. A list is put behind those before it; where there is no more room it is only counted.
+struct FindNeighbours {
+  CandidateTest test;
+  int *neighbour_counts;
+  int *close_counts;
+
+  template <class Team> LOAM_FN void operator()(Team &team, int i) const {
+    auto list = team.begin_list();
+    for (auto packet : team.candidates(i)) {
+      const auto found = test(team, packet);
+      team.append(list, packet, found.near, found.close);
+    }
+    neighbour_counts[i] = list.close + list.far;
+    close_counts[i] = list.close;
+    if (!team.end_list(list)) { // unusually long: walk again, once for each part
+      for (auto packet : team.candidates(i)) team.append_close(list, packet, test(team, packet).close);
+      for (auto packet : team.candidates(i)) {
+        const auto found = test(team, packet);
+        team.append_far(list, packet, found.near, found.close);
+      }
+    }
   }
 };
 
