@@ -1,4 +1,4 @@
-/* The library, through its public C interface, as a host runs it. One iteration of the benchmark is a step of one substep; its time is what the
+/* The library, through its public C interface, as a host runs it. One iteration of the benchmark is a step; its time is what the
  * library's statistics say. */
 #include "case.h"
 
@@ -12,7 +12,7 @@ loam_world_def world_def(const Case &measured, const scenes::Scene &scene) {
   def.solver = measured.solver;
   def.instruction_set = measured.instruction_set;
   def.thread_count = measured.threads;
-  def.substeps = 1;
+  def.substeps = substeps;
   def.iterations = iterations;
   return def;
 }
@@ -36,12 +36,12 @@ void run_library(benchmark::State &state, const Case &measured) {
   try {
     const scenes::Scene scene = scene_of(measured);
     scenes::World world(world_def(measured, scene), scene);
-    for (int substep = 0; substep < warm_up_substeps; ++substep) world.step(substep_seconds);
+    for (int step = 0; step < warm_up_steps; ++step) world.step(substeps * substep_seconds);
 
     Tally tally;
     std::vector<double> stage_seconds;
     for ([[maybe_unused]] auto _ : state) {
-      world.step(substep_seconds);
+      world.step(substeps * substep_seconds);
       const loam_statistics statistics = world.statistics();
       const std::vector<loam_stage> stages = world.stages();
       double solve_seconds = 0;
@@ -54,12 +54,12 @@ void run_library(benchmark::State &state, const Case &measured) {
       state.SetIterationTime(statistics.step_seconds);
     }
 
-    tally.write(state, measured.particles);
+    tally.write(state, measured.particles, substeps);
     state.counters["bytes/particle"] = double(world.memory_bytes()) / double(measured.particles);
     const std::vector<loam_stage> stages = world.stages();
     for (std::size_t stage = 0; stage < stages.size(); ++stage)
       state.counters[stage_counter_prefix + std::string(stages[stage].name)] +=
-          1e9 * stage_seconds[stage] / double(measured.particles);
+          1e9 * stage_seconds[stage] / double(measured.particles) / substeps;
     if (world.statistics().non_finite > 0) state.SkipWithError("particles are not finite");
   } catch (const std::exception &error) {
     state.SkipWithError(error.what());

@@ -16,7 +16,7 @@ void add(const std::string &prefix, const Case &measured, void (*run)(benchmark:
   benchmark::RegisterBenchmark(name.c_str(), [measured, run](benchmark::State &state) { run(state, measured); })
       ->UseManualTime()
       ->Unit(benchmark::kMillisecond)
-      ->Iterations(measured_substeps(measured.particles));
+      ->Iterations(measured_steps(measured.particles));
 }
 
 void add_library(const Case &measured) {

@@ -82,7 +82,7 @@ void RatioTable::print_ratios() const {
     if (row.configuration.rfind("reference", 0) == 0) references[row.particles] = row;
 
   std::printf(
-      "\nPair visits per second, fastest substep; ratios to the scalar reference at the same particle count.\n\n"
+      "\nPair visits per second, fastest step; ratios to the scalar reference at the same particle count.\n\n"
       "| configuration | particles | solve, M/s | ratio | whole step, M/s | ratio | ns a particle and substep | bytes a "
       "particle |\n|---|--:|--:|--:|--:|--:|--:|--:|\n");
   for (const Row &row : rows_) {
@@ -102,7 +102,7 @@ void RatioTable::print_ratios() const {
 }
 
 void RatioTable::print_stages() const {
-  std::printf("\nNanoseconds a particle and substep by stage: the fastest substep of each, for the reference the mean.\n\n"
+  std::printf("\nNanoseconds a particle and substep by stage: the fastest step of each, for the reference the mean.\n\n"
               "| configuration | particles | stages |\n|---|--:|---|\n");
   for (const Row &row : rows_)
     if (!row.stages.empty())

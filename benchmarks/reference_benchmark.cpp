@@ -10,7 +10,7 @@ void run_reference(benchmark::State &state, const Case &measured) {
     reference::Settings settings = reference::settings_for(scene);
     settings.iterations = iterations;
     auto solver = reference::solver_for<float>(scene, settings);
-    for (int substep = 0; substep < warm_up_substeps; ++substep) solver.substep(substep_seconds);
+    for (int substep = 0; substep < warm_up_steps * substeps; ++substep) solver.substep(substep_seconds);
 
     Tally tally;
     for ([[maybe_unused]] auto _ : state) {
@@ -21,10 +21,11 @@ void run_reference(benchmark::State &state, const Case &measured) {
       tally.add(seconds, solver.seconds().solve - before.solve, double(solver.pair_visits() - visits_before));
       state.SetIterationTime(seconds);
     }
-    tally.write(state, measured.particles);
+    tally.write(state, measured.particles, 1);
 
     const reference::StageSeconds total = solver.seconds();
-    const double particle_substeps = double(measured.particles) * (warm_up_substeps + measured_substeps(measured.particles));
+    const double particle_substeps =
+        double(measured.particles) * (warm_up_steps * substeps + measured_steps(measured.particles));
     const std::pair<const char *, double> stages[] = {{"sort", total.sort},
                                                       {"neighbour search", total.neighbour_search},
                                                       {"gradients", total.gradients},
