@@ -21,9 +21,25 @@ typedef struct loam_mesh {
   uint32_t triangle_count;
 } loam_mesh;
 
+/* A solid by its signed distance, metres, at the points of a grid: under 0 inside. Between the points it is trilinear; outside of the grid nothing is
+ * solid. Its details should be a few spacings wide, and about a kernel radius or more. Belongs to the host; read during the call only. */
+typedef struct loam_distance_grid {
+  const float *values; /* size[0] x size[1] x size[2], x fastest, then y, then z */
+  float origin[3];     /* where the first value is, in the collider's own frame */
+  float spacing;       /* between points, metres, 1e-6 to 1e6 */
+  uint32_t size[3];    /* points along x, y, z; 2 to 65536 each, at most 2^28 in all */
+  uint32_t reserved;   /* 0 */
+} loam_distance_grid;
+
+/* All but MESH are solid. A particle that finds itself inside a solid is not thrown out, but comes out slowly on the nearest side. */
 enum {
-  LOAM_COLLIDER_PLANE = 0, /* the half space below the plane is solid: local y <= 0 */
-  LOAM_COLLIDER_MESH = 1   /* a surface, solid on neither side: matter stays on the side where it is */
+  LOAM_COLLIDER_PLANE = 0,   /* the half space below the plane is solid: local y <= 0 */
+  LOAM_COLLIDER_MESH = 1,    /* a surface, solid on neither side: matter stays on the side where it is */
+  LOAM_COLLIDER_SPHERE = 2,  /* of `radius` */
+  LOAM_COLLIDER_CAPSULE = 3, /* all within `radius` of the segment from (0, -half_height, 0) to (0, half_height, 0) */
+  LOAM_COLLIDER_BOX = 4,     /* of `half_extents`, along the axes of its frame */
+  LOAM_COLLIDER_HULL = 5,    /* convex: what `mesh` encloses, which must be closed, convex, facing outward, at most 1024 triangles */
+  LOAM_COLLIDER_GRID = 6     /* where the distances of `grid` are 0 or less */
 };
 
 typedef struct loam_collider_def {
@@ -33,16 +49,24 @@ typedef struct loam_collider_def {
   float rotation[4]; /* unit quaternion x, y, z, w; default identity; normalised by the library */
   float friction;    /* Coulomb coefficient against all matter, 0 to 100; default 0.6 */
   uint32_t reserved; /* 0 */
-  loam_mesh mesh;    /* MESH only, in the collider's own frame; copied */
+  loam_mesh mesh;    /* MESH and HULL only, in the collider's own frame; copied */
+
+  /* Each for the kinds that name it. Metres, over 0 and at most 1e8; half_height may be 0. Default 0. */
+  float radius;
+  float half_height;
+  float half_extents[3];
+  uint32_t reserved_2;     /* 0 */
+  loam_distance_grid grid; /* copied */
 } loam_collider_def;
 
 /* Errors: INVALID_ARGUMENT for null or an unknown size. */
 LOAM_API loam_status loam_collider_def_default(loam_collider_def *def, size_t size);
 
-/* Makes a collider. Meshes need not be perfect: degenerate triangles are dropped and counted, open and non-manifold edges are
+/* Makes a collider. Meshes of kind MESH need not be perfect: degenerate triangles are dropped and counted, open and non-manifold edges are
  * accepted and counted (see loam_collider_get_report).
- * Errors: INVALID_ARGUMENT naming field and value (a NaN vertex, an index out of range); INVALID_MESH if no usable triangle is
- * left; OUT_OF_MEMORY; CAPACITY beyond 4096 colliders in a world. */
+ * Errors: INVALID_ARGUMENT naming field and value (a NaN vertex, an index out of range, values of a grid that are no distances: they change
+ * by more than twice the spacing from point to point, or are nowhere 0 or less); INVALID_MESH if no usable triangle is left, or if a HULL's mesh is
+ * open, not convex or flat; OUT_OF_MEMORY; CAPACITY beyond 4096 colliders in a world. */
 LOAM_API loam_status loam_collider_create(loam_world *world, const loam_collider_def *def, loam_collider_id *collider);
 
 /* Errors: INVALID_HANDLE. */
@@ -58,7 +82,7 @@ LOAM_API loam_status loam_collider_move(loam_world *world, loam_collider_id coll
 LOAM_API loam_status loam_collider_place(loam_world *world, loam_collider_id collider, const float position[3],
                                          const float rotation[4]);
 
-/* What the library found in a collider's mesh. For a plane all counts are 0. */
+/* What the library found in a collider's mesh. Without a mesh all counts are 0. */
 typedef struct loam_collider_report {
   uint32_t struct_size;          /* set by the caller */
   uint32_t triangles;            /* kept */

@@ -1,8 +1,13 @@
+#include <cstddef>
+
 #include "api/guard.h"
 
 using namespace loam;
 
 namespace {
+
+// The size before the kinds beyond MESH.
+constexpr std::size_t first_size = offsetof(loam_collider_def, radius);
 
 loam_collider_def default_collider() {
   loam_collider_def def = {};
@@ -16,14 +21,14 @@ loam_collider_def default_collider() {
 } // namespace
 
 loam_status loam_collider_def_default(loam_collider_def *def, size_t size) {
-  return guarded(nullptr, [&] { write_definition(def, "def", size, default_collider()); });
+  return guarded(nullptr, [&] { write_definition(def, "def", size, default_collider(), {first_size}); });
 }
 
 loam_status loam_collider_create(loam_world *world, const loam_collider_def *def, loam_collider_id *collider) {
   return guarded(world, [&] {
     check_pointer(world, "world");
     check_pointer(collider, "collider");
-    *collider = world->create_collider(read_definition(def, "def", default_collider()));
+    *collider = world->create_collider(read_definition(def, "def", default_collider(), {first_size}));
   });
 }
 

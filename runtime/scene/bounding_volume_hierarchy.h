@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "kernels/contact/collider_view.h"
+#include "kernels/contact/triangle_mesh.h"
 #include "scene/triangle_mesh.h"
 
 namespace loam {

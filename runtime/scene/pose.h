@@ -1,7 +1,7 @@
 // Rigid poses between two moments.
 #pragma once
 
-#include "kernels/contact/collider_view.h"
+#include "kernels/contact/pose.h"
 
 namespace loam {
 

@@ -6,6 +6,7 @@
 
 #include "cpu/kernel_table.h"
 #include "scene/checks.h"
+#include "scene/collider_shape.h"
 #include "scene/material.h"
 #include "scene/pose.h"
 #include "scene/sampling.h"
@@ -142,7 +143,7 @@ void loam_world::step(float seconds) {
   input_.colliders.clear();
   for (std::size_t i = 0; i < colliders_.size(); ++i)
     if (const Collider *c = colliders_.at_index(i); c != nullptr)
-      input_.colliders.push_back({c->kind, c->friction, c->pose, c->target, c->mesh});
+      input_.colliders.push_back({c->shape, c->friction, c->pose, c->target});
   try {
     backend_->step(input_);
   } catch (const Error &) {
@@ -278,27 +279,20 @@ const loam_material_def &loam_world::material(loam_material_id id) const { retur
 // ----------------------------------------------------------------------------------------------------- colliders ---
 
 loam_collider_id loam_world::create_collider(const loam_collider_def &def) {
-  check_choice("kind", def.kind, LOAM_COLLIDER_MESH);
   check_range("friction", static_cast<double>(def.friction), 0, 100);
   check_reserved("reserved", def.reserved);
+  check_reserved("reserved_2", def.reserved_2);
   Collider collider;
-  collider.kind = def.kind;
   collider.friction = def.friction;
   collider.pose = collider.target = make_pose(def.position, def.rotation);
-  collider.report.struct_size = sizeof collider.report;
   (void)colliders_.next_id(); // room for one more
-  if (def.kind == LOAM_COLLIDER_MESH) {
-    const TriangleMesh mesh = make_triangle_mesh(def.mesh, "mesh");
-    collider.report = mesh.report;
-    collider.report.struct_size = sizeof collider.report;
-    collider.mesh = backend_->add_mesh(build_bounding_volume_hierarchy(mesh));
-  }
+  collider.shape = backend_->add_shape(make_collider_shape(def, collider.report));
+  collider.report.struct_size = sizeof collider.report;
   return colliders_.add(collider);
 }
 
 void loam_world::destroy_collider(loam_collider_id id) {
-  const int mesh = colliders_.at(id, "collider").mesh;
-  if (mesh >= 0) backend_->remove_mesh(mesh);
+  backend_->remove_shape(colliders_.at(id, "collider").shape);
   colliders_.remove(id, "collider");
 }
 

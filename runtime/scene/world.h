@@ -58,10 +58,9 @@ private:
     float friction;
   };
   struct Collider {
-    std::uint32_t kind = LOAM_COLLIDER_PLANE;
+    int shape = -1; // as the backend numbers them
     float friction = 0;
     loam::Pose pose{}, target{};
-    int mesh = -1;
     loam_collider_report report{};
   };
   void check_unmapped() const;

@@ -9,10 +9,10 @@
 
 #include <loam/loam.h>
 
-#include "kernels/contact/collider_view.h"
+#include "kernels/contact/pose.h"
 #include "kernels/materials/laws.h"
-#include "scene/bounding_volume_hierarchy.h"
 #include "schedule/schedule.h"
+#include "solver/collider_shape.h"
 #include "solver/execution_settings.h"
 
 namespace loam {
@@ -47,10 +47,9 @@ struct SolverSettings {
 
 // A collider during a step: it moves from `start` to `end`.
 struct ColliderState {
-  std::uint32_t kind;
+  int shape; // as add_shape() answered
   float friction;
   Pose start, end;
-  int mesh; // as add_mesh() answered; -1 for a plane
 };
 
 struct StepInput {
@@ -75,8 +74,8 @@ class Backend {
 public:
   virtual ~Backend() = default;
   virtual void set_materials(const std::vector<SolverMaterial> &materials) = 0;
-  virtual int add_mesh(const BoundingVolumeHierarchy &mesh) = 0;
-  virtual void remove_mesh(int mesh) = 0;
+  virtual int add_shape(const ColliderShape &shape) = 0;
+  virtual void remove_shape(int shape) = 0;
   virtual void add_particles(const NewParticles &particles) = 0;
   virtual std::uint64_t particle_count() const = 0;
   // Throws Error; then the particles stand at the end of the last whole substep, and `statistics.substeps_done` says of which.

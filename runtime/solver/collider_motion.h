@@ -6,29 +6,16 @@
 #include <vector>
 
 #include "kernels/contact/collider_view.h"
-#include "scene/bounding_volume_hierarchy.h"
 
 namespace loam {
 
 class ColliderMotion {
 public:
-  // The greatest distance of a vertex from the mesh's origin.
-  static float extent_of(const BoundingVolumeHierarchy &mesh) {
-    float squared = 0;
-    for (const BvhTriangle &t : mesh.triangles) squared = std::max({squared, dot(t.a, t.a), dot(t.b, t.b), dot(t.c, t.c)});
-    return 1.00001f * square_root(squared);
-  }
-
-  void include(const ColliderView &mesh, float extent) {
-    if (at_rest(mesh)) return;
-    const float spin = spin_of(mesh);
-    include(shift_of(mesh) + spin * extent, spin);
-  }
-  // A plane has points as far away as one likes.
-  void include_plane(const ColliderView &plane) {
-    if (at_rest(plane)) return;
-    const float spin = spin_of(plane);
-    include(spin > 0.0f ? std::numeric_limits<float>::infinity() : shift_of(plane), spin);
+  // `extent`: the greatest distance of a point of its surface from its origin; infinite for a plane.
+  void include(const ColliderView &collider, float extent) {
+    if (at_rest(collider)) return;
+    const float spin = spin_of(collider);
+    include(spin > 0.0f ? shift_of(collider) + spin * extent : shift_of(collider), spin);
   }
 
   // The most that a point of any collider moves.
@@ -70,7 +57,7 @@ inline bool go_on(const std::vector<ColliderView> &before, const std::vector<Col
     ColliderView between = a;
     between.start = a.end;
     between.end = b.start;
-    return a.kind == b.kind && a.nodes == b.nodes && at_rest(between);
+    return a.shape.kind == b.shape.kind && at_rest(between);
   });
 }
 

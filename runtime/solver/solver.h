@@ -12,8 +12,10 @@
 #include "kernels/integration/measures.h"
 #include "kernels/neighbours/sort_stages.h"
 #include "scene/error.h"
+#include "scene/pose.h"
 #include "solver/backend.h"
 #include "solver/collider_motion.h"
+#include "solver/collider_shapes.h"
 #include "solver/stages.h"
 
 namespace loam {
@@ -23,8 +25,8 @@ public:
   Solver(const SolverSettings &settings, const ExecutionSettings &execution);
 
   void set_materials(const std::vector<SolverMaterial> &materials) override;
-  int add_mesh(const BoundingVolumeHierarchy &mesh) override;
-  void remove_mesh(int mesh) override;
+  int add_shape(const ColliderShape &shape) override;
+  void remove_shape(int shape) override;
   void add_particles(const NewParticles &particles) override;
   std::uint64_t particle_count() const override { return static_cast<std::uint64_t>(count_); }
   void step(const StepInput &input) override;
@@ -42,7 +44,7 @@ private:
     Array<Row> positions, velocities;
     Array<float> strains, histories, drifts, log_volumes, rest_volumes;
     Array<std::uint32_t> ids, materials;
-    Array<float> free_distances; // while there are meshes
+    Array<float> free_distances; // while there are costly shapes
     ParticleArrays arrays() {
       return {positions.data(),   velocities.data(),   strains.data(), histories.data(), drifts.data(),
               log_volumes.data(), rest_volumes.data(), ids.data(),     materials.data(), free_distances.data()};
@@ -52,15 +54,6 @@ private:
              log_volumes.bytes() + rest_volumes.bytes() + ids.bytes() + materials.bytes() + free_distances.bytes();
     }
   };
-  struct Mesh {
-    Array<BvhNode> nodes;
-    Array<TrianglePacket> packets;
-    Array<BvhFeatures> features;
-    Array<Vec3<float>> ring;
-    float extent = 0; // the greatest distance of a vertex from the mesh's origin
-    bool in_use = false;
-  };
-
   ParticleStorage make_storage() {
     return {executor_.template array<Row>(),           executor_.template array<Row>(),
             executor_.template array<float>(),         executor_.template array<float>(),
@@ -136,7 +129,7 @@ private:
   Array<float> meetings_; // material by material
   bool contact_between_materials_ = false;
   Array<Row> jacobi_rows_[3], jacobi_drift_rows_[3];
-  std::vector<Mesh> meshes_;
+  ColliderShapes<Executor> shapes_{executor_};
   std::vector<ColliderView> views_, views_before_; // of this substep and the one before
   ColliderMotion collider_motion_;
   bool free_distances_hold_ = false; // what they say was true at the end of views_before_
@@ -273,32 +266,14 @@ template <class Executor> void Solver<Executor>::set_materials(const std::vector
   schedule_is_current_ = false;
 }
 
-template <class Executor> int Solver<Executor>::add_mesh(const BoundingVolumeHierarchy &mesh) {
+template <class Executor> int Solver<Executor>::add_shape(const ColliderShape &shape) {
   free_distances_hold_ = false;
-  Mesh stored = {executor_.template array<BvhNode>(),     executor_.template array<TrianglePacket>(),
-                 executor_.template array<BvhFeatures>(), executor_.template array<Vec3<float>>(),
-                 ColliderMotion::extent_of(mesh),         true};
-  copy_in(stored.nodes, mesh.nodes);
-  copy_in(stored.packets, mesh.packets);
-  copy_in(stored.features, mesh.features);
-  copy_in(stored.ring, mesh.ring);
-  for (std::size_t i = 0; i < meshes_.size(); ++i)
-    if (!meshes_[i].in_use) {
-      meshes_[i] = std::move(stored);
-      return static_cast<int>(i);
-    }
-  meshes_.push_back(std::move(stored));
-  return static_cast<int>(meshes_.size()) - 1;
+  return shapes_.add(shape);
 }
 
-template <class Executor> void Solver<Executor>::remove_mesh(int mesh) {
+template <class Executor> void Solver<Executor>::remove_shape(int shape) {
   free_distances_hold_ = false;
-  Mesh &stored = meshes_[static_cast<std::size_t>(mesh)];
-  stored.nodes.free();
-  stored.packets.free();
-  stored.features.free();
-  stored.ring.free();
-  stored.in_use = false;
+  shapes_.remove(shape);
 }
 
 template <class Executor> void Solver<Executor>::add_particles(const NewParticles &particles) {
@@ -366,9 +341,7 @@ template <class Executor> std::vector<MemoryUse> Solver<Executor>::memory() cons
     for (const Array<Row> &column : jacobi_drift_rows_) bytes += column.bytes();
     uses.push_back({"Jacobi solver", bytes});
   }
-  std::uint64_t colliders = collider_views_.bytes() + contacts_.bytes();
-  for (const Mesh &mesh : meshes_)
-    colliders += mesh.nodes.bytes() + mesh.packets.bytes() + mesh.features.bytes() + mesh.ring.bytes();
+  const std::uint64_t colliders = collider_views_.bytes() + contacts_.bytes() + shapes_.bytes();
   if (colliders > 0) uses.push_back({"colliders", colliders});
   if (densities_.bytes() > 0) uses.push_back({"mapped densities", densities_.bytes()});
   return uses;

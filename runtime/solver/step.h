@@ -150,38 +150,6 @@ template <class Executor> void Solver<Executor>::search_neighbours() {
   lap(schedule_.gradients, pairs_);
 }
 
-// The pose at a share of the way, by spherical interpolation: constant velocity and spin.
-inline Pose interpolate(const Pose &a, const Pose &b, double t) {
-  if (t <= 0) return a;
-  if (t >= 1) return b;
-  Pose pose;
-  pose.position = {static_cast<float>(a.position.x + t * (static_cast<double>(b.position.x) - a.position.x)),
-                   static_cast<float>(a.position.y + t * (static_cast<double>(b.position.y) - a.position.y)),
-                   static_cast<float>(a.position.z + t * (static_cast<double>(b.position.z) - a.position.z))};
-  const double p[4] = {a.rotation.x, a.rotation.y, a.rotation.z, a.rotation.w};
-  double q[4] = {b.rotation.x, b.rotation.y, b.rotation.z, b.rotation.w};
-  double cosine = p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3];
-  if (cosine < 0) { // the shorter way round
-    for (double &c : q) c = -c;
-    cosine = -cosine;
-  }
-  double from = 1 - t, to = t;
-  if (cosine < 0.9999) {
-    const double angle = std::acos(cosine), sine = std::sin(angle);
-    from = std::sin((1 - t) * angle) / sine;
-    to = std::sin(t * angle) / sine;
-  }
-  double r[4], norm = 0;
-  for (int k = 0; k < 4; ++k) {
-    r[k] = from * p[k] + to * q[k];
-    norm += r[k] * r[k];
-  }
-  norm = std::sqrt(norm);
-  pose.rotation = {static_cast<float>(r[0] / norm), static_cast<float>(r[1] / norm), static_cast<float>(r[2] / norm),
-                   static_cast<float>(r[3] / norm)};
-  return pose;
-}
-
 template <class Executor> void Solver<Executor>::prepare_contacts(const StepInput &input, std::uint32_t index) {
   contact_count_ = 0;
   views_before_.swap(views_);
@@ -189,20 +157,11 @@ template <class Executor> void Solver<Executor>::prepare_contacts(const StepInpu
   collider_motion_ = {};
   for (const ColliderState &collider : input.colliders) {
     ColliderView view = {};
-    view.kind = collider.kind;
     view.friction = collider.friction;
     view.start = interpolate(collider.start, collider.end, static_cast<double>(index) / input.substeps);
     view.end = interpolate(collider.start, collider.end, static_cast<double>(index + 1) / input.substeps);
-    if (collider.mesh >= 0) {
-      Mesh &mesh = meshes_[static_cast<std::size_t>(collider.mesh)];
-      view.nodes = mesh.nodes.data();
-      view.packets = mesh.packets.data();
-      view.features = mesh.features.data();
-      view.ring = mesh.ring.data();
-      collider_motion_.include(view, mesh.extent);
-    } else {
-      collider_motion_.include_plane(view);
-    }
+    view.shape = shapes_.view(collider.shape);
+    collider_motion_.include(view, shapes_.extent(collider.shape));
     views_.push_back(view);
   }
   prepare_free_distances();
@@ -224,11 +183,11 @@ template <class Executor> void Solver<Executor>::prepare_contacts(const StepInpu
   lap(schedule_.find_contacts, particles());
 }
 
-// Free distances are held while there are meshes, and forgotten where a collider came, went or was placed.
+// Free distances are held while there are shapes that they pay for, and forgotten where a collider came, went or was placed.
 template <class Executor> void Solver<Executor>::prepare_free_distances() {
-  const bool meshes =
-      std::any_of(views_.begin(), views_.end(), [](const ColliderView &view) { return view.nodes != nullptr; });
-  if (!meshes || !settings_.keep_free_distances) {
+  const bool costly =
+      std::any_of(views_.begin(), views_.end(), [](const ColliderView &view) { return is_costly(view.shape); });
+  if (!costly || !settings_.keep_free_distances) {
     now_.free_distances.free();
     other_.free_distances.free();
   } else {

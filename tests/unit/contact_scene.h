@@ -37,15 +37,21 @@ struct ContactScene {
     velocities.push_back({v.x, v.y, v.z, 1000.0f});
   }
   int add_plane(float friction, Pose pose = {{0, 0, 0}, {0, 0, 0, 1}}) {
-    colliders.push_back({LOAM_COLLIDER_PLANE, friction, pose, pose, nullptr, nullptr, nullptr, nullptr});
-    return int(colliders.size()) - 1;
+    Shape shape{};
+    shape.kind = LOAM_COLLIDER_PLANE;
+    return add_shape(shape, friction, pose);
   }
   int add_mesh(const MeshData &data, float friction, Pose pose = {{0, 0, 0}, {0, 0, 0, 1}}) {
     hierarchies.push_back(
         std::make_unique<BoundingVolumeHierarchy>(build_bounding_volume_hierarchy(make_triangle_mesh(data.view(), "mesh"))));
     const BoundingVolumeHierarchy &h = *hierarchies.back();
-    colliders.push_back(
-        {LOAM_COLLIDER_MESH, friction, pose, pose, h.nodes.data(), h.packets.data(), h.features.data(), h.ring.data()});
+    Shape shape{};
+    shape.kind = LOAM_COLLIDER_MESH;
+    shape.mesh = {h.nodes.data(), h.packets.data(), h.features.data(), h.ring.data()};
+    return add_shape(shape, friction, pose);
+  }
+  int add_shape(const Shape &shape, float friction, Pose pose = {{0, 0, 0}, {0, 0, 0, 1}}) {
+    colliders.push_back({friction, pose, pose, shape});
     return int(colliders.size()) - 1;
   }
   // Where a collider is to be at the end of the next substep.

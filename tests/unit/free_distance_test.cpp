@@ -38,7 +38,7 @@ public:
     add_block({0, 0, 0});
     bowl_ = add_mesh(test::icosphere_mesh(0.12f, 3), at_origin);
     paddle_ = add_mesh(test::box_mesh({0.005f, 0.04f, 0.08f}), {{-0.08f, -0.03f, 0}, {0, 0, 0, 1}});
-    input_.colliders.push_back({LOAM_COLLIDER_PLANE, 0.5f, at_origin, at_origin, -1});
+    input_.colliders.push_back({backend_->add_shape(PlaneShape{}), 0.5f, at_origin, at_origin});
     place(2, {{0, -0.11f, 0}, {0, 0, 0, 1}});
   }
 
@@ -55,7 +55,7 @@ public:
       if (s == 16) add_block({0, 0.06f, 0});
       if (s == 24) {
         input_.colliders.pop_back();
-        backend_->remove_mesh(plate_);
+        backend_->remove_shape(plate_);
       }
       backend_->step(input_);
       for (ColliderState &collider : input_.colliders) collider.start = collider.end;
@@ -82,8 +82,8 @@ private:
     backend_->add_particles(particles);
   }
   int add_mesh(const MeshData &data, const Pose &pose) {
-    const int mesh = backend_->add_mesh(build_bounding_volume_hierarchy(make_triangle_mesh(data.view(), "mesh")));
-    input_.colliders.push_back({LOAM_COLLIDER_MESH, 0.5f, pose, pose, mesh});
+    const int mesh = backend_->add_shape(build_bounding_volume_hierarchy(make_triangle_mesh(data.view(), "mesh")));
+    input_.colliders.push_back({mesh, 0.5f, pose, pose});
     return mesh;
   }
   void place(std::size_t collider, const Pose &pose) {
@@ -101,9 +101,8 @@ TEST(FreeDistances, LeaveNoTraceInTheState) {
   EXPECT_EQ(Scene(true, 3).run(), expected);
 }
 
-ColliderView view_between(std::uint32_t kind, const Pose &start, const Pose &end) {
+ColliderView view_between(const Pose &start, const Pose &end) {
   ColliderView view = {};
-  view.kind = kind;
   view.start = start;
   view.end = end;
   return view;
@@ -116,7 +115,7 @@ TEST(FreeDistances, TheMotionOfCollidersIsBounded) {
     const Pose start = {random.in_box(2), turn(random.direction(), random.between(0, 6))};
     const Pose end = {start.position + random.in_box(size),
                       multiply(turn(random.direction(), random.between(0, size)), start.rotation)};
-    const ColliderView view = view_between(LOAM_COLLIDER_MESH, start, end);
+    const ColliderView view = view_between(start, end);
     ColliderMotion motion;
     motion.include(view, 0.5f);
     const Vec3<float> point = 0.5f * random.direction();
@@ -127,10 +126,10 @@ TEST(FreeDistances, TheMotionOfCollidersIsBounded) {
     EXPECT_GE(enough, 0.1f + length(to_world(end, outside) - to_world(start, outside)));
   }
   ColliderMotion rest, turning;
-  rest.include(view_between(LOAM_COLLIDER_MESH, at_origin, at_origin), 1);
+  rest.include(view_between(at_origin, at_origin), 1);
   EXPECT_EQ(rest.greatest(), 0);
   EXPECT_FLOAT_EQ(rest.enough(1), 1.00001f);
-  turning.include_plane(view_between(LOAM_COLLIDER_PLANE, at_origin, {{0, 0, 0}, turn({0, 0, 1}, 0.01f)}));
+  turning.include(view_between(at_origin, {{0, 0, 0}, turn({0, 0, 1}, 0.01f)}), INFINITY);
   EXPECT_TRUE(std::isinf(turning.enough(1)));
 }
 

@@ -1,6 +1,7 @@
 // Once a substep: which planes hold a particle back.
 //
-// A particle keeps the stand-off from every collider. For a mesh this becomes, for one substep, up to four half spaces, each through a
+// A particle keeps the stand-off from every collider. For a convex solid that is the half space beyond the nearest point, facing the particle, which keeps
+// clear of all of the solid. For a mesh it becomes, for one substep, up to four half spaces, each through a
 // point of the surface that is closest to the particle, and facing the particle: a mesh is solid on neither side.
 //
 //        o  x at the start                Which points? Those where the distance to the particle has a local minimum over
@@ -17,8 +18,6 @@
 //
 // Most particles are far from every collider for many substeps: see free_distance.h.
 #pragma once
-
-#include <loam/collider.h>
 
 #include "kernels/contact/free_distance.h"
 #include "kernels/contact/mesh_query.h"
@@ -86,10 +85,10 @@ struct FindContacts {
     PlaneList list;
     float clearance = stand_off + reach, free = 1e30f;
     for (int i = 0; i < collider_count; ++i) {
-      if (colliders[i].kind == LOAM_COLLIDER_PLANE) {
-        find_plane(i, x, list, clearance, free);
-      } else {
+      if (is_mesh(colliders[i].shape)) {
         find_mesh(i, x, expected_reach(particle), list, clearance, free);
+      } else {
+        find_solid(i, x, list, clearance, free);
       }
     }
     free_distances.keep(particle, free);
@@ -134,14 +133,45 @@ private:
     return plane;
   }
 
-  LOAM_FN void find_plane(int index, Vec3<float> x, PlaneList &list, float &clearance, float &free) const {
+  LOAM_FN void find_solid(int index, Vec3<float> x, PlaneList &list, float &clearance, float &free) const {
     const ColliderView &collider = colliders[index];
     const Vec3<float> local = to_local(collider.start, x);
     const Vec3<float> shift = carried(collider, local);
-    const ContactPlane plane = plane_at(collider, {local.x, 0.0f, local.z}, {0.0f, 1.0f, 0.0f}, local.y, shift);
-    clearance = minimum(clearance, local.y - length(shift));
-    free = minimum(free, local.y - FreeDistances::rounding(collider, x, local));
-    if (plane.gap < reach) list.insert(plane, index);
+    const Surface surface = surface_of(collider.shape, local, stand_off + reach + length(shift));
+    const float certain = certain_distance(collider.shape, surface);
+    clearance = minimum(clearance, certain - length(shift));
+    free = minimum(free, certain - FreeDistances::rounding(collider, x, local));
+    if (!insert_solid(index, local, surface, shift, list)) return;
+    if (!is_convex(collider.shape)) find_walls(index, local, surface, shift, list);
+  }
+
+  // False if it is out of reach.
+  LOAM_FN bool insert_solid(int index, Vec3<float> local, const Surface &surface, Vec3<float> shift, PlaneList &list) const {
+    const Vec3<float> point = local - surface.distance * surface.normal;
+    const ContactPlane plane = plane_at(colliders[index], point, surface.normal, surface.distance, shift);
+    if (!(plane.gap < reach)) return false;
+    list.insert(plane, index);
+    return true;
+  }
+
+  // The further walls of a solid that is not convex: one stands where a step to the side leads nearer to the surface than the nearest point is.
+  LOAM_FN void find_walls(int index, Vec3<float> local, const Surface &nearest, Vec3<float> shift, PlaneList &list) const {
+    const Vec3<float> n = nearest.normal;
+    const Vec3<float> across = absolute(n.x) < 0.7f ? Vec3<float>{0.0f, n.z, 0.0f - n.y} : Vec3<float>{0.0f - n.z, 0.0f, n.x};
+    const Vec3<float> u = (1.0f / length(across)) * across, v = cross(n, u);
+    for (int k = 0; k < 4; ++k) {
+      float step = (k & 1) != 0 ? stand_off : 0.0f - stand_off;
+      const Vec3<float> side = k < 2 ? u : v;
+      Surface wall = surface_of(colliders[index].shape, local + step * side, stand_off);
+      if (!(wall.distance < nearest.distance - 0.3f * stand_off)) continue;
+      if (wall.distance < 0.0f) { // deep in a wall that may be thin: not so far
+        step = 0.5f * step;
+        wall = surface_of(colliders[index].shape, local + step * side, stand_off);
+      }
+      if (dot(wall.normal, n) > 0.9f) continue;
+      wall.distance = wall.distance - step * dot(wall.normal, side);
+      (void)insert_solid(index, local, wall, shift, list);
+    }
   }
 
   LOAM_FN void find_mesh(int index, Vec3<float> x, float expected, PlaneList &list, float &clearance, float &free) const {
@@ -157,9 +187,10 @@ private:
     bool nearest_is_listed = false;
     float radius_squared = far * far; // shrinks to the nearest point so far, but not below `near`
     float out_of_reach_squared = 1e30f;
-    BallQuery query(collider.nodes, local, free_distances.look_squared());
+    const MeshShape &mesh = collider.shape.mesh;
+    BallQuery query(mesh.nodes, local, free_distances.look_squared());
     for (int i = query.next(radius_squared); i >= 0; i = query.next(radius_squared)) {
-      const TrianglePacket &packet = collider.packets[i];
+      const TrianglePacket &packet = mesh.packets[i];
       const PacketPoints points = closest_points(packet, local);
       const int count = static_cast<int>(packet.count);
       for (int k = 0; k < count; ++k) {
@@ -167,7 +198,7 @@ private:
         if (!(points.distance_squared[k] < radius_squared)) continue;
         const ClosestPoint<float> closest = points.at(k);
         const bool listed = closest.distance_squared < near_squared &&
-                            is_minimum(collider, static_cast<int>(packet.first) + k, closest, local);
+                            is_minimum(mesh, static_cast<int>(packet.first) + k, closest, local);
         if (closest.distance_squared < nearest.distance_squared) {
           nearest = closest;
           nearest_packet = &packet;
@@ -187,14 +218,14 @@ private:
     if (!nearest_is_listed) add(index, *nearest_packet, nearest_lane, nearest, local, shift, true, list);
   }
 
-  LOAM_FN static bool is_minimum(const ColliderView &collider, int triangle, const ClosestPoint<float> &closest,
+  LOAM_FN static bool is_minimum(const MeshShape &mesh, int triangle, const ClosestPoint<float> &closest,
                                  Vec3<float> local) {
-    const BvhFeatures &features = collider.features[triangle];
+    const BvhFeatures &features = mesh.features[triangle];
     if ((features.owned >> closest.feature & 1u) == 0) return false;
     if (closest.feature == BvhFeatures::inside) return true;
     constexpr float slope_squared = 1e-6f; // a descent of less than 1 in 1000 may be rounding
     for (std::uint32_t k = features.first[closest.feature]; k < features.first[closest.feature + 1]; ++k) {
-      const Vec3<float> along = (collider.ring[k] - local) - closest.point;
+      const Vec3<float> along = (mesh.ring[k] - local) - closest.point;
       const float descent = 0.0f - dot(along, closest.point);
       if (descent > 0.0f && descent * descent > slope_squared * (closest.distance_squared * dot(along, along))) return false;
     }

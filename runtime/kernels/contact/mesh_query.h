@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernels/contact/closest_point_on_triangle.h"
-#include "kernels/contact/collider_view.h"
+#include "kernels/contact/triangle_mesh.h"
 
 namespace loam {
 
