@@ -38,8 +38,9 @@ enum {
   LOAM_COLLIDER_SPHERE = 2,  /* of `radius` */
   LOAM_COLLIDER_CAPSULE = 3, /* all within `radius` of the segment from (0, -half_height, 0) to (0, half_height, 0) */
   LOAM_COLLIDER_BOX = 4,     /* of `half_extents`, along the axes of its frame */
-  LOAM_COLLIDER_HULL = 5,    /* convex: what `mesh` encloses, which must be closed, convex, facing outward, at most 1024 triangles */
-  LOAM_COLLIDER_GRID = 6     /* where the distances of `grid` are 0 or less */
+  LOAM_COLLIDER_HULL = 5, /* what `mesh` encloses: closed, convex to a thousandth of its size, facing outward, at most 1024
+                                triangles */
+  LOAM_COLLIDER_GRID = 6  /* where the distances of `grid` are 0 or less */
 };
 
 typedef struct loam_collider_def {

@@ -24,7 +24,8 @@ ConvexHull make_hull(const loam_mesh &source, loam_collider_report &report) {
   const TriangleMesh mesh = make_triangle_mesh(source, "mesh");
   report = mesh.report;
   if (mesh.report.closed == 0)
-    throw Error(LOAM_ERROR_INVALID_MESH, format("mesh is not the surface of a convex hull: it has %s", mesh.first_flaw.c_str()));
+    throw Error(LOAM_ERROR_INVALID_MESH,
+                format("mesh is not the surface of a convex hull: it has %s", mesh.first_flaw.c_str()));
 
   double size = 0, six_volumes = 0;
   const auto vertex = [&](std::size_t corner) { return mesh.vertices[mesh.indices[corner]]; };
@@ -37,18 +38,17 @@ ConvexHull make_hull(const loam_mesh &source, loam_collider_report &report) {
     const Vec3<double> a = widen(vertex(c)), ab = widen(vertex(c + 1)) - a, ac = widen(vertex(c + 2)) - a;
     const Vec3<double> twice_area = cross(ab, ac), normal = (1 / length(twice_area)) * twice_area;
     six_volumes += dot(a - widen(vertex(0)), twice_area);
-    hull.faces.push_back({vertex(c),
-                          vertex(c + 1),
-                          vertex(c + 2),
-                          {float(normal.x), float(normal.y), float(normal.z)},
-                          float(dot(normal, a))});
+    double offset = dot(normal, a);
     for (std::size_t other = 0; other < mesh.indices.size(); ++other) {
       const double height = dot(normal, widen(vertex(other)) - a);
-      if (height > 1e-5 * size)
+      if (height > 1e-3 * size)
         throw Error(LOAM_ERROR_INVALID_MESH,
                     format("mesh is not convex, or its triangles face inward: vertex %u is %g m in front of triangle %zu",
                            mesh.indices[other], height, c / 3));
+      offset = std::max(offset, dot(normal, widen(vertex(other))));
     }
+    hull.faces.push_back(
+        {vertex(c), vertex(c + 1), vertex(c + 2), {float(normal.x), float(normal.y), float(normal.z)}, float(offset)});
   }
   if (!(six_volumes > 1e-12 * size * size * size))
     throw Error(LOAM_ERROR_INVALID_MESH, "mesh is flat: a convex hull must have a volume");
@@ -97,15 +97,14 @@ DistanceGrid make_grid(const loam_distance_grid &grid) {
     count *= grid.size[axis];
   }
   if (count > std::uint64_t(1) << 28)
-    throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("grid.size is %u x %u x %u: more than 2^28 values", grid.size[0],
-                                                    grid.size[1], grid.size[2]));
+    throw Error(LOAM_ERROR_INVALID_ARGUMENT,
+                format("grid.size is %u x %u x %u: more than 2^28 values", grid.size[0], grid.size[1], grid.size[2]));
   float least = grid.values[0];
   for (std::uint64_t i = 0; i < count; ++i) {
     const float value = grid.values[i];
     if (!(std::abs(double(value)) <= greatest_length))
-      throw Error(LOAM_ERROR_INVALID_ARGUMENT,
-                  format("grid.values[%llu] is %g; it must be finite and at most %g in size",
-                         static_cast<unsigned long long>(i), double(value), greatest_length));
+      throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("grid.values[%llu] is %g; it must be finite and at most %g in size",
+                                                      static_cast<unsigned long long>(i), double(value), greatest_length));
     least = std::min(least, value);
   }
   if (least > 0)

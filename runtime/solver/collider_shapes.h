@@ -14,10 +14,14 @@ public:
 
   // Answers with the shape's number. Throws Error OUT_OF_MEMORY.
   int add(const ColliderShape &shape) {
-    Stored stored = {executor_.template array<BvhNode>(),     executor_.template array<TrianglePacket>(),
-                     executor_.template array<BvhFeatures>(), executor_.template array<Vec3<float>>(),
-                     executor_.template array<HullFace>(),    executor_.template array<float>(),
-                     Shape{},                                 0,
+    Stored stored = {executor_.template array<BvhNode>(),
+                     executor_.template array<TrianglePacket>(),
+                     executor_.template array<BvhFeatures>(),
+                     executor_.template array<Vec3<float>>(),
+                     executor_.template array<HullFace>(),
+                     executor_.template array<float>(),
+                     Shape{},
+                     0,
                      true};
     std::visit([&](const auto &each) { store(stored, each); }, shape);
     stored.extent *= 1.00001f;
@@ -46,7 +50,8 @@ public:
   std::uint64_t bytes() const {
     std::uint64_t bytes = 0;
     for (const Stored &s : shapes_)
-      bytes += s.nodes.bytes() + s.packets.bytes() + s.features.bytes() + s.ring.bytes() + s.faces.bytes() + s.values.bytes();
+      bytes +=
+          s.nodes.bytes() + s.packets.bytes() + s.features.bytes() + s.ring.bytes() + s.faces.bytes() + s.values.bytes();
     return bytes;
   }
 

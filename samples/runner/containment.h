@@ -1,10 +1,11 @@
-// Counts the particles that have left the closed colliders in which they started.
+// Counts the particles that have got through a collider: those that are in a solid in which they did not start, and those on the other side of a
+// closed mesh.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
-#include "inside_test.h"
 #include "particles.h"
 #include "scene.h"
 
@@ -12,19 +13,22 @@ namespace runner {
 
 class Containment {
 public:
-  // `start` are the particles before the first step. A collider takes part if it never moves, its mesh is closed, and it holds at least one of them.
+  // `start` are the particles before the first step. Open meshes have no sides and take no part.
   Containment(const Scene &scene, const Particles &start);
 
-  // Particles that are now outside a collider that they started in.
-  std::uint64_t count_outside(const Particles &particles) const;
-  std::size_t containers() const { return containers_.size(); }
+  // Particles that are now on a side of a collider where they must not be; `time` in seconds says where it has moved.
+  std::uint64_t count_outside(const Particles &particles, double time) const;
+  // Colliders that take part.
+  std::size_t sides() const { return sides_.size(); }
 
 private:
-  struct Container {
-    InsideTest test;
-    std::vector<std::uint8_t> held; // by particle id: was it inside at the start?
+  struct Side {
+    const SceneCollider *collider;
+    std::function<bool(Vector3d)> inside; // of a point in the collider's frame
+    bool both;                            // a mesh: coming out is as wrong as going in
+    std::vector<std::uint8_t> within;     // by particle id: was it inside at the start?
   };
-  std::vector<Container> containers_;
+  std::vector<Side> sides_;
 };
 
 } // namespace runner

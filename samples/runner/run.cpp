@@ -72,7 +72,7 @@ int run(const Options &options) {
   statistics.threads = threads;
   statistics.backend = simulation.backend();
   statistics.instruction_set = simulation.instruction_set();
-  statistics.has_containers = containment.containers() != 0;
+  statistics.has_sides = containment.sides() != 0;
   fmt::print(stderr,
              "{}: {} particles, kernel radius {:.4g} m, {} substeps of {} iterations, {} frames, {}{}{}, {} thread{}\n",
              scene.title.empty() ? scene.path.string() : scene.title, statistics.particles, scene.world.kernel_radius,
@@ -94,7 +94,7 @@ int run(const Options &options) {
       record.statistics = simulation.statistics();
       const Particles particles = simulation.read_particles();
       record.watched = count_watched(scene, particles);
-      record.outside = containment.count_outside(particles);
+      record.outside = containment.count_outside(particles, record.time);
       statistics.frames.push_back(record);
 
       if (due(frame, options.ply_every))

@@ -62,9 +62,9 @@ std::string make_statistics_json(const Scene &scene, const RunStatistics &run) {
     json["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}, {"items", stage.items}});
   json["memory"] = Json::array();
   for (const loam_memory &row : run.memory) json["memory"].push_back({{"effect", row.effect}, {"bytes", row.bytes}});
-  // Null where the scene has nothing closed to be outside of.
-  json["outside_colliders"] = run.has_containers ? Json(run.frames.empty() ? 0 : run.frames.back().outside) : Json();
-  json["outside_colliders_peak"] = run.has_containers ? Json(outside_peak) : Json();
+  // Null where no collider has sides.
+  json["outside_colliders"] = run.has_sides ? Json(run.frames.empty() ? 0 : run.frames.back().outside) : Json();
+  json["outside_colliders_peak"] = run.has_sides ? Json(outside_peak) : Json();
   if (scene.watch) json["watched"] = run.frames.empty() ? run.particles : run.frames.back().watched;
   json["non_finite"] = last.non_finite;
   json["max_speed"] = last.max_speed;

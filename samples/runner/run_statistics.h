@@ -25,8 +25,8 @@ struct RunStatistics {
   std::uint32_t threads = 0;
   std::string backend, instruction_set;
   bool interrupted = false;
-  bool has_containers = false; // is there a closed collider that particles could leave?
-  double step_seconds = 0;     // wall time of all calls of loam_world_step
+  bool has_sides = false;  // is there a collider that particles could be on the wrong side of?
+  double step_seconds = 0; // wall time of all calls of loam_world_step
   std::vector<FrameRecord> frames;
   std::vector<loam_stage> stages; // summed over the frames
   std::vector<loam_memory> memory;

@@ -11,6 +11,7 @@
 
 #include <loam/loam.h>
 
+#include "distance_field.h"
 #include "mesh.h"
 #include "motion.h"
 #include "vector.h"
@@ -62,8 +63,11 @@ enum class Appearance { hidden, glass, matte, wood, metal, glossy, tiles };
 struct SceneCollider {
   Place place;
   std::uint32_t kind = LOAM_COLLIDER_PLANE;
-  std::filesystem::path file; // MESH: its key in Scene::meshes
-  Pose pose;                  // at the start
+  std::filesystem::path file; // of all but PLANE: the key in Scene::meshes of what it is, or of what is shown for it
+  float radius = 0, half_height = 0;
+  Vector3 half_extents;
+  DistanceField field; // GRID
+  Pose pose;           // at the start
   std::vector<Motion> motions;
   float friction = 0;
   Appearance appearance = Appearance::matte;

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "collider_meshes.h"
+#include "distance_field.h"
 #include "error.h"
 #include "material_reader.h"
 #include "obj_reader.h"
@@ -28,9 +30,10 @@ const std::vector<std::pair<std::string_view, std::uint32_t>> regions = {{"box",
                                                                          {"sphere", LOAM_REGION_SPHERE},
                                                                          {"cylinder", LOAM_REGION_CYLINDER},
                                                                          {"mesh", LOAM_REGION_MESH}};
-enum class ColliderShape { plane, mesh, box };
-const std::vector<std::pair<std::string_view, ColliderShape>> collider_shapes = {
-    {"plane", ColliderShape::plane}, {"mesh", ColliderShape::mesh}, {"box", ColliderShape::box}};
+const std::vector<std::pair<std::string_view, std::uint32_t>> collider_kinds = {
+    {"plane", LOAM_COLLIDER_PLANE},     {"mesh", LOAM_COLLIDER_MESH}, {"sphere", LOAM_COLLIDER_SPHERE},
+    {"capsule", LOAM_COLLIDER_CAPSULE}, {"box", LOAM_COLLIDER_BOX},   {"hull", LOAM_COLLIDER_HULL},
+    {"grid", LOAM_COLLIDER_GRID}};
 const std::vector<std::pair<std::string_view, Appearance>> appearances = {
     {"hidden", Appearance::hidden}, {"glass", Appearance::glass}, {"matte", Appearance::matte},
     {"wood", Appearance::wood},     {"metal", Appearance::metal}, {"glossy", Appearance::glossy}};
@@ -41,17 +44,6 @@ const std::vector<std::pair<std::string_view, Appearance>> plane_appearances = {
 // Defaults come from the library, and they cannot fail for the struct sizes of its own headers unless it is a different version.
 void expect_ok(loam_status status, const char *call) {
   if (status != LOAM_OK) throw Error(fmt::format("{}: {}: {}", call, loam_status_name(status), loam_last_error()));
-}
-
-// Twelve triangles, counter-clockwise seen from outside.
-Mesh make_box(Vector3 half_extents) {
-  Mesh mesh;
-  for (int corner = 0; corner < 8; ++corner)
-    mesh.vertices.push_back({corner & 1 ? half_extents.x : -half_extents.x, corner & 2 ? half_extents.y : -half_extents.y,
-                             corner & 4 ? half_extents.z : -half_extents.z});
-  mesh.indices = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
-                  2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
-  return mesh;
 }
 
 class Reader {
@@ -204,30 +196,66 @@ private:
     expect_ok(loam_collider_def_default(&def, sizeof def), "loam_collider_def_default");
     collider.friction = def.friction;
     table.require("kind");
-    ColliderShape shape = ColliderShape::plane;
-    table.read("kind", shape, collider_shapes);
-    collider.kind = shape == ColliderShape::plane ? LOAM_COLLIDER_PLANE : LOAM_COLLIDER_MESH;
-    if (shape == ColliderShape::mesh) collider.file = read_mesh(table);
-    if (shape == ColliderShape::box) {
-      Vector3 half_extents;
-      table.require("half_extents");
-      table.read("half_extents", half_extents);
-      for (int axis = 0; axis < 3; ++axis)
-        if (!(half_extents[axis] > 0)) table.fail("half_extents", "must be over 0");
-      collider.file = fmt::format("the box of {}", collider.place.key);
-      scene_.meshes.emplace(collider.file, make_box(half_extents));
-    }
+    table.read("kind", collider.kind, collider_kinds);
+    read_shape(table, collider);
     table.read("position", collider.pose.position);
     collider.pose.rotation = read_rotation(table);
     for (TomlTable &motion : table.tables("motions")) collider.motions.push_back(read_motion(motion));
     table.read("friction", collider.friction);
-    if (shape == ColliderShape::plane && !collider.motions.empty()) table.fail("motions", "a plane stays where it is");
-    table.read("appearance", collider.appearance, shape == ColliderShape::plane ? plane_appearances : appearances);
+    if (collider.kind == LOAM_COLLIDER_PLANE && !collider.motions.empty())
+      table.fail("motions", "a plane stays where it is");
+    table.read("appearance", collider.appearance, collider.kind == LOAM_COLLIDER_PLANE ? plane_appearances : appearances);
     if (collider.appearance == Appearance::glass && !collider.motions.empty())
       table.fail("appearance", "what moves cannot be shown as glass");
     table.read("colour", collider.colour);
     table.finish();
     scene_.colliders.push_back(collider);
+  }
+
+  void read_shape(TomlTable &table, SceneCollider &collider) {
+    const auto require_length = [&](const char *key, auto &value) {
+      table.require(key);
+      table.read(key, value);
+    };
+    const auto show = [&](const Mesh &mesh) { // under a name that no file has
+      collider.file = fmt::format("the shape of {}", collider.place.key);
+      scene_.meshes.emplace(collider.file, mesh);
+    };
+    switch (collider.kind) {
+    case LOAM_COLLIDER_MESH:
+    case LOAM_COLLIDER_HULL:
+      collider.file = read_mesh(table);
+      break;
+    case LOAM_COLLIDER_SPHERE:
+    case LOAM_COLLIDER_CAPSULE:
+      require_length("radius", collider.radius);
+      if (!(collider.radius > 0)) table.fail("radius", "must be over 0");
+      if (collider.kind == LOAM_COLLIDER_CAPSULE) require_length("half_height", collider.half_height);
+      if (!(collider.half_height >= 0)) table.fail("half_height", "must be 0 or more");
+      show(make_capsule(collider.radius, collider.half_height));
+      break;
+    case LOAM_COLLIDER_BOX:
+      require_length("half_extents", collider.half_extents);
+      for (int axis = 0; axis < 3; ++axis)
+        if (!(collider.half_extents[axis] > 0)) table.fail("half_extents", "must be over 0");
+      show(make_box(collider.half_extents));
+      break;
+    case LOAM_COLLIDER_GRID: {
+      collider.file = read_mesh(table);
+      float spacing = 0;
+      require_length("spacing", spacing);
+      if (!(spacing > 0)) table.fail("spacing", "must be over 0");
+      try { // farther than contacts are looked for
+        collider.field = make_distance_field(scene_.meshes.at(collider.file), spacing,
+                                             std::max(4 * spacing, 4 * scene_.world.kernel_radius));
+      } catch (const Error &error) {
+        table.fail("file", error.what());
+      }
+      break;
+    }
+    default:
+      break;
+    }
   }
 
   Motion read_motion(TomlTable &table) {

@@ -22,6 +22,16 @@ loam_mesh describe(const Mesh &mesh) {
   result.triangle_count = static_cast<std::uint32_t>(mesh.triangle_count());
   return result;
 }
+loam_distance_grid describe(const DistanceField &field) {
+  loam_distance_grid result{};
+  result.values = field.values.data();
+  for (int axis = 0; axis < 3; ++axis) {
+    result.origin[axis] = field.origin[axis];
+    result.size[axis] = field.size[axis];
+  }
+  result.spacing = field.spacing;
+  return result;
+}
 static_assert(sizeof(Vector3) == 3 * sizeof(float), "vertices are handed over as plain floats");
 
 loam_region describe(const SceneRegion &region, const Scene &scene) {
@@ -111,7 +121,12 @@ bool Simulation::build(std::uint64_t particle_capacity) {
     for (int axis = 0; axis < 3; ++axis) def.position[axis] = collider.pose.position[axis];
     std::copy(collider.pose.rotation.begin(), collider.pose.rotation.end(), def.rotation);
     def.friction = collider.friction;
-    if (collider.kind == LOAM_COLLIDER_MESH) def.mesh = describe(scene_->meshes.at(collider.file));
+    if (collider.kind == LOAM_COLLIDER_MESH || collider.kind == LOAM_COLLIDER_HULL)
+      def.mesh = describe(scene_->meshes.at(collider.file));
+    def.radius = collider.radius;
+    def.half_height = collider.half_height;
+    for (int axis = 0; axis < 3; ++axis) def.half_extents[axis] = collider.half_extents[axis];
+    if (collider.kind == LOAM_COLLIDER_GRID) def.grid = describe(collider.field);
     loam_collider_id id = 0;
     check(loam_collider_create(world, &def, &id), collider.place);
     collider_ids_.push_back(id);

@@ -1,5 +1,6 @@
 /* collider.h: every field of the definition, meshes of every kind, poses, handles. */
 #include "small_world.h"
+#include "support/solids.h"
 
 namespace loam {
 namespace {
@@ -75,7 +76,7 @@ TEST_F(Colliders, UnknownSizes) {
 }
 
 TEST_F(Colliders, EveryFieldHasItsRange) {
-  for (const std::uint32_t kind : {2u, ~0u}) {
+  for (const std::uint32_t kind : {LOAM_COLLIDER_GRID + 1u, ~0u}) {
     loam_collider_def def = plane();
     def.kind = kind;
     refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"kind", std::to_string(kind)});
@@ -103,6 +104,124 @@ TEST_F(Colliders, EveryFieldHasItsRange) {
   def = plane();
   def.reserved = 7;
   refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"reserved", "7"});
+  def = plane();
+  def.reserved_2 = 7;
+  refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"reserved_2", "7"});
+}
+
+TEST_F(Colliders, EverySizeOfASolidHasItsRange) {
+  const auto of = [](std::uint32_t kind) {
+    loam_collider_def def = plane();
+    def.kind = kind;
+    def.radius = def.half_height = def.half_extents[0] = def.half_extents[1] = def.half_extents[2] = 1;
+    return def;
+  };
+  for (const float bad : {0.0f, -1.0f, 1e9f, nan, infinity, -infinity}) {
+    for (const std::uint32_t kind : {LOAM_COLLIDER_SPHERE, LOAM_COLLIDER_CAPSULE}) {
+      loam_collider_def def = of(kind);
+      def.radius = bad;
+      refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"radius"});
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      loam_collider_def def = of(LOAM_COLLIDER_BOX);
+      def.half_extents[axis] = bad;
+      refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"half_extents[" + std::to_string(axis) + "]"});
+    }
+    if (bad == 0) continue;
+    loam_collider_def def = of(LOAM_COLLIDER_CAPSULE);
+    def.half_height = bad;
+    refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"half_height"});
+  }
+  // A field that a kind does not name is not looked at.
+  loam_collider_def def = of(LOAM_COLLIDER_SPHERE);
+  def.half_height = def.half_extents[1] = nan;
+  loam_collider_id id = 0;
+  EXPECT_EQ(loam_collider_create(world(), &def, &id), LOAM_OK);
+  EXPECT_EQ(report(id).triangles, 0u);
+}
+
+TEST_F(Colliders, AHullMustBeClosedConvexAndOutward) {
+  const meshes::Mesh good = meshes::icosphere(1, 2);
+  const auto of_hull = [](const meshes::Mesh &mesh) {
+    loam_collider_def def = of_mesh(mesh);
+    def.kind = LOAM_COLLIDER_HULL;
+    return def;
+  };
+  loam_collider_id id = 0;
+  loam_collider_def def = of_hull(good);
+  ASSERT_EQ(scenes::outcome(loam_collider_create(world(), &def, &id)), "LOAM_OK");
+  EXPECT_EQ(report(id).triangles, 320u);
+  meshes::Mesh mesh = good;
+  mesh.indices.resize(mesh.indices.size() - 3);
+  refuses(LOAM_ERROR_INVALID_MESH, of_hull(mesh), {"mesh", "3 open edges"});
+  mesh = good;
+  for (int k = 0; k < 3; ++k) mesh.positions[30 + k] *= 0.9f; // a dent
+  refuses(LOAM_ERROR_INVALID_MESH, of_hull(mesh), {"mesh is not convex", "vertex"});
+  mesh = good;
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) std::swap(mesh.indices[i], mesh.indices[i + 1]);
+  refuses(LOAM_ERROR_INVALID_MESH, of_hull(mesh), {"mesh is not convex", "inward"});
+  mesh = good;
+  for (std::size_t i = 1; i < mesh.positions.size(); i += 3) mesh.positions[i] = 0;
+  refuses(LOAM_ERROR_INVALID_MESH, of_hull(mesh), {"mesh"});
+  mesh = meshes::Mesh(); // two sides of a square, each with a diagonal of its own
+  mesh.positions = {0, 0, 0, 0, 0, 1, 1, 0, 1, 1, 0, 0};
+  mesh.quad(0, 1, 2, 3);
+  mesh.quad(3, 2, 1, 0);
+  refuses(LOAM_ERROR_INVALID_MESH, of_hull(mesh), {"mesh is flat"});
+  refuses(LOAM_ERROR_INVALID_ARGUMENT, of_hull(meshes::icosphere(1, 3)), {"mesh.triangle_count is 1280", "1024"});
+  def = of_hull(good);
+  def.mesh.positions = nullptr;
+  refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"mesh.positions is null"});
+}
+
+TEST_F(Colliders, AGridMustBeOfDistances) {
+  const solids::Solid torus =
+      solids::grid("torus", 1, 9, [](const solids::Point &p) { return solids::torus_distance(p, 0.6, 0.3); });
+  loam_collider_def def = torus.definition();
+  loam_collider_id id = 0;
+  ASSERT_EQ(scenes::outcome(loam_collider_create(world(), &def, &id)), "LOAM_OK");
+  ASSERT_EQ(loam_collider_destroy(world(), id), LOAM_OK);
+  const auto refuses_grid = [&](const std::vector<std::string> &parts, auto &&spoil) {
+    loam_collider_def bad = torus.definition();
+    std::vector<float> values = torus.values;
+    bad.grid.values = values.data();
+    spoil(bad.grid, values);
+    refuses(LOAM_ERROR_INVALID_ARGUMENT, bad, parts);
+  };
+  using Grid = loam_distance_grid;
+  using Values = std::vector<float>;
+  refuses_grid({"grid.values is null"}, [](Grid &grid, Values &) { grid.values = nullptr; });
+  for (const float bad : {nan, infinity, -infinity, 1e9f})
+    refuses_grid({"grid.values[77]"}, [=](Grid &, Values &values) { values[77] = bad; });
+  refuses_grid({"grid.values", "change by"}, [](Grid &, Values &values) { values[77] += 0.6f; });
+  refuses_grid({"grid.values", "nothing is solid"},
+               [](Grid &, Values &values) { std::fill(values.begin(), values.end(), 1.0f); });
+  for (const float bad : {0.0f, -1.0f, 1e7f, nan, infinity})
+    refuses_grid({"grid.spacing"}, [=](Grid &grid, Values &) { grid.spacing = bad; });
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
+    const std::string at = "[" + std::to_string(axis) + "]";
+    for (const float bad : {nan, infinity, 1e20f})
+      refuses_grid({"grid.origin" + at}, [=](Grid &grid, Values &) { grid.origin[axis] = bad; });
+    for (const std::uint32_t bad : {0u, 1u, 65537u, ~0u})
+      refuses_grid({"grid.size" + at}, [=](Grid &grid, Values &) { grid.size[axis] = bad; });
+  }
+  refuses_grid({"grid.size", "2^28"}, [](Grid &grid, Values &) { std::fill(grid.size, grid.size + 3, 65536u); });
+  refuses_grid({"grid.reserved"}, [](Grid &grid, Values &) { grid.reserved = 1; });
+}
+
+/* A host of the first version: its definition ends before the fields of solids. */
+TEST_F(Colliders, AnOlderDefinitionKeepsWorking) {
+  constexpr std::size_t first = offsetof(loam_collider_def, radius);
+  loam_collider_def def;
+  std::memset(static_cast<void *>(&def), 0x5A, sizeof def);
+  ASSERT_EQ(loam_collider_def_default(&def, first), LOAM_OK);
+  EXPECT_EQ(def.struct_size, first);
+  const auto *bytes = reinterpret_cast<const unsigned char *>(&def);
+  EXPECT_TRUE(std::all_of(bytes + first, bytes + sizeof def, [](unsigned char byte) { return byte == 0x5A; }));
+  loam_collider_id id = 0;
+  EXPECT_EQ(scenes::outcome(loam_collider_create(world(), &def, &id)), "LOAM_OK");
+  def.kind = LOAM_COLLIDER_SPHERE; // it cannot know how large
+  refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"radius is 0"});
 }
 
 TEST_F(Colliders, MeshesAreChecked) {

@@ -184,7 +184,54 @@ meshes::Mesh random_flawed_mesh(Random &random, float r) {
   return mesh;
 }
 
-loam_collider_def random_collider(Random &random, float r, meshes::Mesh &mesh) {
+namespace {
+
+/* Closed and convex. */
+meshes::Mesh random_hull(Random &random, float r) {
+  meshes::Mesh mesh = random.chance(0.5) ? meshes::box(1, 1, 1) : meshes::icosphere(1, int(random.below(3)));
+  float scale[3];
+  for (float &s : scale) s = r * random.log_between(random.chance(0.1) ? 1e-3 : 0.3, 8);
+  const float slant = random.chance(0.5) ? 0 : random.between(-2, 2);
+  for (std::size_t i = 0; i < mesh.positions.size(); i += 3) {
+    float *x = &mesh.positions[i];
+    x[0] += slant * x[1];
+    for (int k = 0; k < 3; ++k) x[k] *= scale[k];
+  }
+  return mesh;
+}
+
+/* A solid of three balls, at times cut by the end of the grid, or a band of distances alone. */
+void random_grid(Random &random, float r, loam_distance_grid &grid, std::vector<float> &values) {
+  grid.spacing = std::max(1e-6f, r * random.log_between(0.1, 2));
+  for (std::uint32_t &size : grid.size) size = random.from(2, 16);
+  float extent[3], ball[3][4];
+  for (int k = 0; k < 3; ++k) {
+    extent[k] = grid.spacing * float(grid.size[k] - 1);
+    grid.origin[k] = -0.5f * extent[k] + r * random.between(-1, 1);
+  }
+  for (auto &b : ball) {
+    for (int k = 0; k < 3; ++k)
+      b[k] = random.uniform() < 0.5 ? extent[k] * random.between(0.2, 0.8) : extent[k] * random.between(0, 1);
+    b[3] = grid.spacing * random.between(0.5, 6);
+  }
+  const float band = random.chance(0.3) ? grid.spacing * random.between(1, 4) : 1e7f;
+  for (std::uint32_t z = 0; z < grid.size[2]; ++z)
+    for (std::uint32_t y = 0; y < grid.size[1]; ++y)
+      for (std::uint32_t x = 0; x < grid.size[0]; ++x) {
+        float least = band;
+        for (const auto &b : ball)
+          least = std::min(least, std::hypot(grid.spacing * float(x) - b[0], grid.spacing * float(y) - b[1],
+                                             grid.spacing * float(z) - b[2]) -
+                                      b[3]);
+        values.push_back(std::max(least, -band));
+      }
+  values[random.below(values.size())] = std::min(0.0f, values.front()); // at times a point that is no distance
+  grid.values = values.data();
+}
+
+} // namespace
+
+loam_collider_def random_collider(Random &random, float r, ColliderArrays &arrays) {
   loam_collider_def def;
   loam_collider_def_default(&def, sizeof def);
   random_place(random, r, def.position, def.rotation);
@@ -193,15 +240,33 @@ loam_collider_def random_collider(Random &random, float r, meshes::Mesh &mesh) {
     def.rotation[3] = 1;
   }
   def.friction = random.chance(0.2) ? 0.0f : random.log_between(0.05, 100);
-  if (random.chance(0.4)) return def;
-  def.kind = LOAM_COLLIDER_MESH;
-  mesh = random.chance(0.5) ? random_flawed_mesh(random, r) : random_solid(random, r);
-  def.mesh = mesh.view();
+  if (random.chance(0.2)) return def;
+  def.kind = random.from(LOAM_COLLIDER_MESH, LOAM_COLLIDER_GRID);
+  if (random.chance(0.3)) def.kind = LOAM_COLLIDER_MESH;
+  switch (def.kind) {
+  case LOAM_COLLIDER_MESH:
+    arrays.mesh = random.chance(0.5) ? random_flawed_mesh(random, r) : random_solid(random, r);
+    def.mesh = arrays.mesh.view();
+    break;
+  case LOAM_COLLIDER_HULL:
+    arrays.mesh = random_hull(random, r);
+    def.mesh = arrays.mesh.view();
+    break;
+  case LOAM_COLLIDER_GRID:
+    random_grid(random, r, def.grid, arrays.values);
+    break;
+  default:
+    def.radius = r * random.log_between(0.1, 8);
+    def.half_height = random.chance(0.2) ? 0.0f : r * random.log_between(0.1, 8);
+    for (float &half : def.half_extents) half = r * random.log_between(0.1, 8);
+    break;
+  }
   return def;
 }
 
-void spoil(loam_collider_def &def, Random &random, meshes::Mesh &mesh) {
-  switch (random.below(9)) {
+void spoil(loam_collider_def &def, Random &random, ColliderArrays &arrays) {
+  meshes::Mesh &mesh = arrays.mesh;
+  switch (random.below(12)) {
   case 0:
     def.position[random.below(3)] = bad_number(random);
     break;
@@ -215,14 +280,41 @@ void spoil(loam_collider_def &def, Random &random, meshes::Mesh &mesh) {
     def.friction = random.chance(0.5) ? -1.0f : bad_number(random);
     break;
   case 4:
-    def.kind = LOAM_COLLIDER_MESH + 1 + random.below(3);
+    def.kind = LOAM_COLLIDER_GRID + 1 + random.below(3);
     break;
   case 5:
-    def.reserved = 1;
+    (random.chance(0.5) ? def.reserved : def.reserved_2) = 1;
     break;
   case 6:
     def.struct_size = random.chance(0.5) ? 4 : std::uint32_t(sizeof def) + 8;
     break;
+  case 7: // every kind of primitive has one that is wrong
+    def.kind = random.from(LOAM_COLLIDER_SPHERE, LOAM_COLLIDER_BOX);
+    def.half_extents[random.below(3)] = def.radius = random.chance(0.5) ? 0.0f : bad_number(random);
+    break;
+  case 8: { // open, inside out, or dented
+    def.kind = LOAM_COLLIDER_HULL;
+    mesh = meshes::icosphere(1, 1);
+    const std::uint32_t flaw = random.below(3);
+    if (flaw == 0) mesh.indices.resize(mesh.indices.size() - 3);
+    for (std::size_t i = 0; i < mesh.indices.size() && flaw == 1; i += 3) std::swap(mesh.indices[i], mesh.indices[i + 1]);
+    for (std::size_t k = 0; k < 3 && flaw == 2; ++k) mesh.positions[k] *= 0.5f;
+    def.mesh = mesh.view();
+    break;
+  }
+  case 9: {
+    arrays.values.clear();
+    random_grid(random, 1, def.grid, arrays.values);
+    def.kind = LOAM_COLLIDER_GRID;
+    const std::uint32_t flaw = random.below(6);
+    if (flaw == 0) arrays.values[random.below(arrays.values.size())] = bad_number(random);
+    if (flaw == 1) def.grid.values = nullptr;
+    if (flaw == 2) def.grid.size[random.below(3)] = random.chance(0.5) ? random.below(2) : ~0u - random.below(9);
+    if (flaw == 3) def.grid.spacing = random.chance(0.5) ? 0.0f : bad_number(random);
+    if (flaw == 4) def.grid.origin[random.below(3)] = bad_number(random);
+    if (flaw == 5) std::fill(arrays.values.begin(), arrays.values.end(), 1.0f);
+    break;
+  }
   default: // flaws that no mesh may have
     def.kind = LOAM_COLLIDER_MESH;
     mesh = random_solid(random, 1);

@@ -32,9 +32,13 @@ meshes::Mesh random_solid(Random &random, float r);
 /* Open, crumpled, doubled, inside out, partly without area: still with a usable triangle. */
 meshes::Mesh random_flawed_mesh(Random &random, float r);
 
-/* `mesh` receives what the definition points to. */
-loam_collider_def random_collider(Random &random, float r, meshes::Mesh &mesh);
-void spoil(loam_collider_def &def, Random &random, meshes::Mesh &mesh);
+/* Of any kind. `arrays` receives what the definition points to. */
+struct ColliderArrays {
+  meshes::Mesh mesh;
+  std::vector<float> values;
+};
+loam_collider_def random_collider(Random &random, float r, ColliderArrays &arrays);
+void spoil(loam_collider_def &def, Random &random, ColliderArrays &arrays);
 
 struct RegionMeshes {
   meshes::Mesh region, cut;

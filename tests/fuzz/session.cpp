@@ -391,11 +391,12 @@ void Session::destroy_material(Random &random) {
 }
 
 void Session::create_collider(Random &random) {
-  meshes::Mesh mesh;
-  const loam_collider_def def = random_collider(random, def_.kernel_radius, mesh);
+  ColliderArrays arrays;
+  const loam_collider_def def = random_collider(random, def_.kernel_radius, arrays);
   loam_collider_id id = 0;
-  const Expect expect =
-      def.kind == LOAM_COLLIDER_PLANE ? Expect::success : Expect::anything; // slivers may leave no triangle
+  const bool arrays_may_be_refused = // slivers may leave no triangle
+      def.kind == LOAM_COLLIDER_MESH || def.kind == LOAM_COLLIDER_HULL || def.kind == LOAM_COLLIDER_GRID;
+  const Expect expect = arrays_may_be_refused ? Expect::anything : Expect::success;
   if (!call("create collider", expect, [&] { return loam_collider_create(world_, &def, &id); })) return;
   Collider collider = {};
   collider.id = id;
@@ -544,9 +545,9 @@ void Session::bad_number_or_choice(Random &random) {
     break;
   }
   case 4: {
-    meshes::Mesh mesh;
-    loam_collider_def def = random_collider(random, def_.kernel_radius, mesh);
-    spoil(def, random, mesh);
+    ColliderArrays arrays;
+    loam_collider_def def = random_collider(random, def_.kernel_radius, arrays);
+    spoil(def, random, arrays);
     loam_collider_id id = 0;
     call("create a bad collider", Expect::failure, [&] { return loam_collider_create(world_, &def, &id); });
     break;

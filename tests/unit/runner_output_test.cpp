@@ -84,7 +84,7 @@ TEST(RunnerStatistics, SumsStagesByName) {
 TEST(RunnerStatistics, WritesARowForEachFrameAndTheHashInHexadecimal) {
   runner::RunStatistics run;
   run.state_hash = 0xabc;
-  run.has_containers = true;
+  run.has_sides = true;
   for (std::uint64_t frame = 1; frame <= 3; ++frame) {
     runner::FrameRecord record;
     record.frame = frame;

@@ -126,7 +126,8 @@ TEST(RunnerSceneReader, ReadsABoxAndItsMotions) {
   const runner::Scene scene = runner::read_scene(folder.write("scene.toml", press));
   ASSERT_EQ(scene.colliders.size(), 1u);
   const runner::SceneCollider &box = scene.colliders[0];
-  EXPECT_EQ(box.kind, static_cast<uint32_t>(LOAM_COLLIDER_MESH));
+  EXPECT_EQ(box.kind, static_cast<uint32_t>(LOAM_COLLIDER_BOX));
+  EXPECT_EQ(box.half_extents.z, 0.3f);
   EXPECT_EQ(scene.meshes.at(box.file).triangle_count(), 12u);
   ASSERT_EQ(box.motions.size(), 2u);
   const runner::Pose pose = runner::pose_at(box.pose, box.motions, 2);
@@ -151,6 +152,31 @@ TEST(RunnerSceneReader, RefusesMotionsAndBoxesThatCannotBe) {
                   {"scene.toml:14:", "motions", "plane"});
   expect_mentions(scene_error(minimal + "[[colliders]]\nkind = \"plane\"\nappearance = \"glass\"\n"),
                   {"scene.toml:14:", "\"glass\"", "\"tiles\""});
+}
+
+TEST(RunnerSceneReader, ReadsSolidsOfEveryKind) {
+  const TemporaryFolder folder;
+  folder.write("solid.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  folder.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 3 2\n");
+  const auto with = [](const std::string &lines) { return minimal + "[[colliders]]\n" + lines; }; // from line 13 on
+  const auto read = [&](const std::string &lines) { return runner::read_scene(folder.write("scene.toml", with(lines))); };
+  runner::Scene scene = read("kind = \"capsule\"\nradius = 0.1\nhalf_height = 0.2\n");
+  EXPECT_EQ(scene.colliders[0].kind, static_cast<uint32_t>(LOAM_COLLIDER_CAPSULE));
+  EXPECT_EQ(scene.colliders[0].half_height, 0.2f);
+  scene = read("kind = \"sphere\"\nradius = 0.1\n");
+  EXPECT_GT(scene.meshes.at(scene.colliders[0].file).triangle_count(), 1000u) << "to be looked at";
+  scene = read("kind = \"hull\"\nfile = \"solid.obj\"\n");
+  EXPECT_EQ(scene.colliders[0].kind, static_cast<uint32_t>(LOAM_COLLIDER_HULL));
+  scene = read("kind = \"grid\"\nfile = \"solid.obj\"\nspacing = 0.05\n");
+  EXPECT_GT(scene.colliders[0].field.size[0], 20u);
+  EXPECT_NEAR(scene.colliders[0].field.at({0.2, 0.2, 0.1}), -0.1, 0.01);
+  const auto error = [&](const std::string &lines) { return error_text([&] { read(lines); }); };
+  expect_mentions(error("kind = \"sphere\"\n"), {"scene.toml:12:", "radius"});
+  expect_mentions(error("kind = \"sphere\"\nradius = 0\n"), {"scene.toml:14:", "radius", "over 0"});
+  expect_mentions(error("kind = \"capsule\"\nradius = 1\nhalf_height = -1\n"), {"scene.toml:15:", "half_height"});
+  expect_mentions(error("kind = \"grid\"\nfile = \"solid.obj\"\nspacing = -1\n"), {"scene.toml:15:", "spacing"});
+  expect_mentions(error("kind = \"grid\"\nfile = \"solid.obj\"\nspacing = 1e-5\n"), {"scene.toml:14:", "file", "2^26"});
+  expect_mentions(error("kind = \"grid\"\nfile = \"open.obj\"\nspacing = 0.1\n"), {"scene.toml:14:", "file", "not closed"});
 }
 
 TEST(RunnerSceneReader, AnEmitterHasTheColourOfItsMaterialUnlessItHasItsOwn) {

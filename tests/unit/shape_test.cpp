@@ -49,7 +49,7 @@ struct Solid {
   ColliderShape keep;
   Shape shape{};
   Distance exact;
-  double tolerance = 1e-6;   // of a distance
+  double tolerance = 1e-6;  // of a distance
   double outside_least = 1; // the least share of the exact distance that is answered, far away
 };
 
@@ -118,10 +118,10 @@ Solid make_hull(const std::string &name, const MeshData &mesh) {
 }
 MeshData wedge() { // as sharp as a blade
   MeshData mesh;
-  mesh.vertices = {{-0.05f, 0, -0.04f}, {-0.05f, 0, 0.04f}, {0.05f, 0.003f, -0.04f}, {0.05f, 0.003f, 0.04f},
-                   {0.05f, -0.003f, -0.04f}, {0.05f, -0.003f, 0.04f}};
-  for (const std::array<std::uint32_t, 3> &t :
-       std::initializer_list<std::array<std::uint32_t, 3>>{{0, 1, 3}, {0, 3, 2}, {0, 4, 5}, {0, 5, 1}, {2, 3, 5}, {2, 5, 4}, {0, 2, 4}, {1, 5, 3}})
+  mesh.vertices = {{-0.05f, 0, -0.04f},    {-0.05f, 0, 0.04f},       {0.05f, 0.003f, -0.04f},
+                   {0.05f, 0.003f, 0.04f}, {0.05f, -0.003f, -0.04f}, {0.05f, -0.003f, 0.04f}};
+  for (const std::array<std::uint32_t, 3> &t : std::initializer_list<std::array<std::uint32_t, 3>>{
+           {0, 1, 3}, {0, 3, 2}, {0, 4, 5}, {0, 5, 1}, {2, 3, 5}, {2, 5, 4}, {0, 2, 4}, {1, 5, 3}})
     mesh.triangle(t[0], t[1], t[2]);
   return mesh;
 }
@@ -273,10 +273,10 @@ TEST(Shapes, AGridMayHaveCornersOnTheInside) {
   const Solid solid = make_grid("cup", cup, 0.055, 56); // 2 mm
   ContactScene scene;
   scene.add_shape(solid.shape, 0.5f);
-  scene.add({0.0346f, -0.0348f, 0});                 // in the corner between floor and wall
-  scene.add({0, -0.0346f, 0});                       // on the floor
+  scene.add({0.0346f, -0.0348f, 0});                      // in the corner between floor and wall
+  scene.add({0, -0.0346f, 0});                            // on the floor
   scene.add({0.02f, 0, 0.02f * std::sqrt(3.0f) * 0.93f}); // at the wall
-  scene.add({0, 0.01f, 0});                          // in the middle
+  scene.add({0, 0.01f, 0});                               // in the middle
   scene.find();
   ASSERT_EQ(scene.contact_count, 3);
   EXPECT_GE(scene.contacts[0].plane_count, 2);

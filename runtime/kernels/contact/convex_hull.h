@@ -1,6 +1,6 @@
 // A solid convex polytope of triangles.
 //
-// The distance to the plane of a face is never more than that to the solid. So the greatest of them tells inside from outside; inside it is the
+// Each face has a plane parallel to it that all vertices lie behind: its own, but for rounded coordinates. The distance to it is never more than that to the solid. So the greatest of them tells inside from outside; inside it is the
 // distance itself, and from outside only faces that the point is in front of, by less than the nearest yet, are looked at closely.
 #pragma once
 
@@ -12,7 +12,7 @@ namespace loam {
 struct HullFace {
   Vec3<float> a, b, c;
   Vec3<float> normal; // outward
-  float offset;       // of the plane: dot(normal, x) = offset
+  float offset;       // of the plane: dot(normal, x) <= offset for all vertices
 };
 
 struct HullShape {

@@ -20,17 +20,18 @@ struct GridShape {
                 z = place(point.z - origin.z, size[2]);
     const long row = size[0], layer = row * size[1];
     const float *v = values + x.cell + y.cell * row + z.cell * layer;
-    const float c[8] = {v[0],     v[1],         v[row],         v[row + 1],
-                        v[layer], v[layer + 1], v[layer + row], v[layer + row + 1]};
+    const float c[8] = {v[0], v[1], v[row], v[row + 1], v[layer], v[layer + 1], v[layer + row], v[layer + row + 1]};
     const float along_x[4] = {c[1] - c[0], c[3] - c[2], c[5] - c[4], c[7] - c[6]};
     float edge[4];
     for (int k = 0; k < 4; ++k) edge[k] = c[2 * k] + x.share * along_x[k];
     const float face[2] = {edge[0] + y.share * (edge[1] - edge[0]), edge[2] + y.share * (edge[3] - edge[2])};
     const float value = face[0] + z.share * (face[1] - face[0]);
 
-    const float low = along_x[0] + y.share * (along_x[1] - along_x[0]), high = along_x[2] + y.share * (along_x[3] - along_x[2]);
+    const float low = along_x[0] + y.share * (along_x[1] - along_x[0]),
+                high = along_x[2] + y.share * (along_x[3] - along_x[2]);
     const Vec3<float> slope = {low + z.share * (high - low),
-                               (edge[1] - edge[0]) + z.share * ((edge[3] - edge[2]) - (edge[1] - edge[0])), face[1] - face[0]};
+                               (edge[1] - edge[0]) + z.share * ((edge[3] - edge[2]) - (edge[1] - edge[0])),
+                               face[1] - face[0]};
 
     const Vec3<float> out = {x.out, y.out, z.out};
     const float beyond = length(out);
@@ -60,7 +61,8 @@ private:
   };
   LOAM_FN Place place(float from_origin, int count) const {
     const float extent = spacing * static_cast<float>(count - 1);
-    const float within = from_origin > 0.0f ? (from_origin < extent ? from_origin : extent) : 0.0f; // what is no number counts as 0
+    const float within =
+        from_origin > 0.0f ? (from_origin < extent ? from_origin : extent) : 0.0f; // what is no number counts as 0
     const float at = within / spacing;
     Place p;
     const int last = count - 2, cell = static_cast<int>(at);

@@ -157,7 +157,8 @@ private:
   // The further walls of a solid that is not convex: one stands where a step to the side leads nearer to the surface than the nearest point is.
   LOAM_FN void find_walls(int index, Vec3<float> local, const Surface &nearest, Vec3<float> shift, PlaneList &list) const {
     const Vec3<float> n = nearest.normal;
-    const Vec3<float> across = absolute(n.x) < 0.7f ? Vec3<float>{0.0f, n.z, 0.0f - n.y} : Vec3<float>{0.0f - n.z, 0.0f, n.x};
+    const Vec3<float> across =
+        absolute(n.x) < 0.7f ? Vec3<float>{0.0f, n.z, 0.0f - n.y} : Vec3<float>{0.0f - n.z, 0.0f, n.x};
     const Vec3<float> u = (1.0f / length(across)) * across, v = cross(n, u);
     for (int k = 0; k < 4; ++k) {
       float step = (k & 1) != 0 ? stand_off : 0.0f - stand_off;
@@ -197,8 +198,8 @@ private:
         out_of_reach_squared = minimum(out_of_reach_squared, points.distance_squared[k]);
         if (!(points.distance_squared[k] < radius_squared)) continue;
         const ClosestPoint<float> closest = points.at(k);
-        const bool listed = closest.distance_squared < near_squared &&
-                            is_minimum(mesh, static_cast<int>(packet.first) + k, closest, local);
+        const bool listed =
+            closest.distance_squared < near_squared && is_minimum(mesh, static_cast<int>(packet.first) + k, closest, local);
         if (closest.distance_squared < nearest.distance_squared) {
           nearest = closest;
           nearest_packet = &packet;

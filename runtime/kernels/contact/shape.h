@@ -31,9 +31,7 @@ struct Shape {
 };
 
 LOAM_FN bool is_mesh(const Shape &shape) { return shape.kind == LOAM_COLLIDER_MESH; }
-LOAM_FN bool is_convex(const Shape &shape) {
-  return shape.kind != LOAM_COLLIDER_MESH && shape.kind != LOAM_COLLIDER_GRID;
-}
+LOAM_FN bool is_convex(const Shape &shape) { return shape.kind != LOAM_COLLIDER_MESH && shape.kind != LOAM_COLLIDER_GRID; }
 
 // Of a solid: not for meshes. Beyond `limit` the distance may be a lower bound.
 LOAM_FN Surface surface_of(const Shape &shape, Vec3<float> point, float limit) {
