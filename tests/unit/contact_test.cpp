@@ -327,6 +327,23 @@ TEST(Contact, NothingLeavesABoxThatIsShaken) {
   }
 }
 
+// To and fro by fifteen times its radius a substep: the wall that comes has no nearest point of its own, the one that is near recedes.
+TEST(Contact, ARoundMeshThatJumpsTakesAlongWhatIsInIt) {
+  const MeshData ball = test::icosphere_mesh(0.04f, 2);
+  const WindingNumber winding(make_triangle_mesh(ball.view(), "mesh"));
+  ContactScene scene;
+  const int collider = scene.add_mesh(ball, 0.5f);
+  test::Random random{3};
+  for (int i = 0; i < 200; ++i) scene.add(random.between(0, 0.037f) * random.direction());
+  Pose pose{{0, 0, 0}, {0, 0, 0, 1}};
+  for (int s = 0; s < 100; ++s) {
+    if (s % 10 < 3) pose = {{s % 2 == 0 ? 0.6f : 0.0f, 0.01f * float(s % 7), 0}, turn({0, 1, 0.5f}, 0.01f * float(s))};
+    scene.move(collider, pose);
+    scene.step();
+    ASSERT_EQ(outside(scene, winding, pose), 0) << s;
+  }
+}
+
 TEST(Contact, AThinMovingPlatePushesAndNothingPasses) {
   for (const float speed : {0.1f, 0.5f, 1.0f, 3.0f}) { // in r a substep
     ContactScene scene;

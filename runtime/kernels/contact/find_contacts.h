@@ -141,15 +141,18 @@ private:
     const float certain = certain_distance(collider.shape, surface);
     clearance = minimum(clearance, certain - length(shift));
     free = minimum(free, certain - FreeDistances::rounding(collider, x, local));
-    if (!insert_solid(index, local, surface, shift, list)) return;
+    // A solid that is not convex may come from elsewhere than its nearest point: the sweep must look at it.
+    const bool by_force = !is_convex(collider.shape) && list.count == 0 && certain - length(shift) < reach;
+    if (!insert_solid(index, local, surface, shift, by_force, list)) return;
     if (!is_convex(collider.shape)) find_walls(index, local, surface, shift, list);
   }
 
   // False if it is out of reach.
-  LOAM_FN bool insert_solid(int index, Vec3<float> local, const Surface &surface, Vec3<float> shift, PlaneList &list) const {
+  LOAM_FN bool insert_solid(int index, Vec3<float> local, const Surface &surface, Vec3<float> shift,
+                            bool even_if_out_of_reach, PlaneList &list) const {
     const Vec3<float> point = local - surface.distance * surface.normal;
     const ContactPlane plane = plane_at(colliders[index], point, surface.normal, surface.distance, shift);
-    if (!(plane.gap < reach)) return false;
+    if (!(plane.gap < reach) && !even_if_out_of_reach) return false;
     list.insert(plane, index);
     return true;
   }
@@ -171,7 +174,7 @@ private:
       }
       if (dot(wall.normal, n) > 0.9f) continue;
       wall.distance = wall.distance - step * dot(wall.normal, side);
-      (void)insert_solid(index, local, wall, shift, list);
+      (void)insert_solid(index, local, wall, shift, false, list);
     }
   }
 
@@ -215,8 +218,9 @@ private:
                              FreeDistances::rounding(collider, x, local));
     if (nearest.feature < 0) return;
     clearance = minimum(clearance, square_root(nearest.distance_squared) - length(shift));
-    // The nearest point is a minimum whatever rounding made of its feature.
-    if (!nearest_is_listed) add(index, *nearest_packet, nearest_lane, nearest, local, shift, true, list);
+    // The nearest point is a minimum whatever rounding made of its feature. And there must be a contact for the sweep to look at, if only of a wall that
+    // recedes: a fast mesh may come from where it has no minimum.
+    if (!nearest_is_listed || list.count == 0) add(index, *nearest_packet, nearest_lane, nearest, local, shift, true, list);
   }
 
   LOAM_FN static bool is_minimum(const MeshShape &mesh, int triangle, const ClosestPoint<float> &closest,
