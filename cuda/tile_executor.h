@@ -18,6 +18,7 @@
 #include "schedule/schedule.h"
 #include "solver/cell_table.h"
 #include "solver/execution_settings.h"
+#include "team_over_constraints.h"
 #include "tile_width.h"
 #include "visit_order.h"
 
@@ -98,6 +99,14 @@ public:
   template <class Stage> void for_each_block(int pass, Row *velocities, const Stage &stage) {
     static_assert(InTurn<Stage>::value);
     machine_.visit_blocks(stage, order_.pairs(velocities), order_.blocks(at(pass)));
+  }
+
+  // ----------------------------------------------------------------------------------------- over constraints ---
+
+  static int constraint_width() { return TeamOverConstraints::W; }
+  template <class Stage> void for_each_constraint(int first_batch, int last_batch, const Stage &stage) {
+    constexpr int W = TeamOverConstraints::W;
+    machine_.for_each((last_batch - first_batch) * W, OverConstraints<Stage>{stage, first_batch * W});
   }
 
   // ---------------------------------------------------------------------------------------------------- time ---

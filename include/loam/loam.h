@@ -7,6 +7,7 @@
  *   material.h   what matter is made of
  *   material_design.h   materials by name, and by what can be seen of them
  *   collider.h   planes and triangle meshes that matter runs into
+ *   cloth.h      sheets that hang, drape and blow in the wind
  *   particles.h  fill volumes with particles, read the particles back
  *
  * Units are SI throughout: metres, kilograms, seconds, pascals, radians. Coordinates are right-handed; which axis
@@ -16,6 +17,7 @@
 #define LOAM_LOAM_H
 
 #include <loam/base.h>
+#include <loam/cloth.h>
 #include <loam/collider.h>
 #include <loam/material.h>
 #include <loam/material_design.h>

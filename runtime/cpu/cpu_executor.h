@@ -136,6 +136,17 @@ public:
         [&](int group) { launch(&stage, pairs, order_.group_begin(group), order_.group_begin(group + 1)); });
   }
 
+  // ----------------------------------------------------------------------------------------- over constraints ---
+
+  // Constraints of a batch.
+  int constraint_width() const { return table_->width; }
+  // The batches of one colour at once.
+  template <class Stage> void for_each_constraint(int first_batch, int last_batch, const Stage &stage) {
+    const auto launch = table_->constraint[IndexOf<Stage, ConstraintStages>::value];
+    in_chunks(last_batch - first_batch, 8,
+              [&](int first, int last) { launch(&stage, first_batch + first, first_batch + last); });
+  }
+
   // ---------------------------------------------------------------------------------------------------- time ---
 
   // Seconds since the previous call.

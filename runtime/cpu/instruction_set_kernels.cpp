@@ -4,6 +4,7 @@
 #include "cpu/kernel_table.h"
 #include "cpu/team_over_candidates.h"
 #include "cpu/team_over_cells.h"
+#include "cpu/team_over_constraints.h"
 
 namespace loam::LOAM_INSTRUCTION_SET {
 
@@ -25,11 +26,17 @@ void launch_interleave(const CpuInterleaving &views, int first_batch, int last_b
   interleave_lists(views, first_batch, last_batch);
 }
 
-template <class... T> constexpr KernelTable make_table(TypeList<T...>) {
-  return {LOAM_PACK_WIDTH, {&launch_team<T>...}, &launch_search, &launch_interleave};
+template <class Stage> void launch_constraints(const void *stage, int first, int last) {
+  const Stage kernel = *static_cast<const Stage *>(stage);
+  TeamOverConstraints team;
+  for (int b = first; b < last; ++b) kernel(team, b);
 }
 
-constexpr KernelTable table = make_table(TeamStages());
+template <class... T, class... S> constexpr KernelTable make_table(TypeList<T...>, TypeList<S...>) {
+  return {LOAM_PACK_WIDTH, {&launch_team<T>...}, &launch_search, &launch_interleave, {&launch_constraints<S>...}};
+}
+
+constexpr KernelTable table = make_table(TeamStages(), ConstraintStages());
 
 } // namespace
 

@@ -11,10 +11,12 @@ struct KernelTable {
   using SearchLaunch = void (*)(const FindNeighbours &stage, const CpuCandidates &candidates, const int *particles,
                                 int count);
   using InterleaveLaunch = void (*)(const CpuInterleaving &views, int first_batch, int last_batch);
+  using ConstraintLaunch = void (*)(const void *stage, int first_batch, int last_batch);
   int width;
   TeamLaunch team[Length<TeamStages>::value];
   SearchLaunch search;
   InterleaveLaunch interleave;
+  ConstraintLaunch constraint[Length<ConstraintStages>::value];
 };
 
 // Null where the instruction set is not part of this build or not of this machine. `instruction_set` is a LOAM_INSTRUCTION_SET_* other than

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "scene/checks.h"
+
 namespace loam {
 
 Pose interpolate(const Pose &a, const Pose &b, double t) {
@@ -32,6 +34,26 @@ Pose interpolate(const Pose &a, const Pose &b, double t) {
   norm = std::sqrt(norm);
   pose.rotation = {static_cast<float>(r[0] / norm), static_cast<float>(r[1] / norm), static_cast<float>(r[2] / norm),
                    static_cast<float>(r[3] / norm)};
+  return pose;
+}
+
+Pose make_pose(const float position[3], const float rotation[4]) {
+  check_vector("position", position, 1e9);
+  double norm = 0;
+  for (int k = 0; k < 4; ++k) {
+    if (!(std::abs(static_cast<double>(rotation[k])) <= 1e6))
+      throw Error(LOAM_ERROR_INVALID_ARGUMENT,
+                  format("rotation[%d] is %g; it must be finite", k, static_cast<double>(rotation[k])));
+    norm += static_cast<double>(rotation[k]) * static_cast<double>(rotation[k]);
+  }
+  norm = std::sqrt(norm);
+  if (!(norm > 1e-6)) throw Error(LOAM_ERROR_INVALID_ARGUMENT, "rotation is a quaternion of length 0");
+  Pose pose;
+  pose.position = {position[0], position[1], position[2]};
+  pose.rotation = {static_cast<float>(static_cast<double>(rotation[0]) / norm),
+                   static_cast<float>(static_cast<double>(rotation[1]) / norm),
+                   static_cast<float>(static_cast<double>(rotation[2]) / norm),
+                   static_cast<float>(static_cast<double>(rotation[3]) / norm)};
   return pose;
 }
 

@@ -11,7 +11,7 @@
 
 namespace loam {
 
-enum class IdKind : std::uint8_t { material = 1, collider = 2 }; // at most 7: an id of one kind is never good for another
+enum class IdKind : std::uint8_t { material = 1, collider = 2, cloth = 3 }; // at most 7: an id of one kind is never good for another
 
 template <class T> class SlotTable {
 public:
@@ -68,6 +68,7 @@ public:
   }
   std::size_t size() const { return slots_.size(); }
   T *at_index(std::size_t index) { return slots_[index].in_use ? &slots_[index].object : nullptr; }
+  const T *at_index(std::size_t index) const { return slots_[index].in_use ? &slots_[index].object : nullptr; }
 
 private:
   struct Slot {

@@ -28,26 +28,6 @@ void check_hooks(const loam_world_def &def) {
     throw Error(LOAM_ERROR_INVALID_ARGUMENT, "job_system has only one of enqueue and finish; give both or neither");
 }
 
-Pose make_pose(const float position[3], const float rotation[4]) {
-  check_vector("position", position, 1e9);
-  double norm = 0;
-  for (int k = 0; k < 4; ++k) {
-    if (!(std::abs(static_cast<double>(rotation[k])) <= 1e6))
-      throw Error(LOAM_ERROR_INVALID_ARGUMENT,
-                  format("rotation[%d] is %g; it must be finite", k, static_cast<double>(rotation[k])));
-    norm += static_cast<double>(rotation[k]) * static_cast<double>(rotation[k]);
-  }
-  norm = std::sqrt(norm);
-  if (!(norm > 1e-6)) throw Error(LOAM_ERROR_INVALID_ARGUMENT, "rotation is a quaternion of length 0");
-  Pose pose;
-  pose.position = {position[0], position[1], position[2]};
-  pose.rotation = {static_cast<float>(static_cast<double>(rotation[0]) / norm),
-                   static_cast<float>(static_cast<double>(rotation[1]) / norm),
-                   static_cast<float>(static_cast<double>(rotation[2]) / norm),
-                   static_cast<float>(static_cast<double>(rotation[3]) / norm)};
-  return pose;
-}
-
 } // namespace
 
 loam_world_def default_world() {
@@ -94,7 +74,8 @@ using namespace loam;
 
 loam_world::loam_world(const loam_world_def &def)
     : def_(def), tag_(next_tag()), materials_(IdKind::material, "material", tag_, 4096),
-      colliders_(IdKind::collider, "collider", tag_, 4096) {
+      colliders_(IdKind::collider, "collider", tag_, 4096),
+      cloths_(tag_, 0.5f * def.kernel_radius) {
   execution_ = {def.allocator, def.job_system, def.thread_count, def.instruction_set};
   if (execution_.instruction_set == LOAM_INSTRUCTION_SET_AUTO) execution_.instruction_set = best_instruction_set();
   if (kernel_table(execution_.instruction_set) == nullptr)
@@ -135,15 +116,20 @@ void loam_world::check_unmapped() const {
 void loam_world::step(float seconds) {
   check_above("seconds", static_cast<double>(seconds), 0, 1);
   check_unmapped();
+  if (cloths_.any_mapped()) throw Error(LOAM_ERROR_IN_USE, "a cloth's buffers are mapped; call loam_cloth_unmap first");
   if (!(seconds / static_cast<float>(input_.substeps) >= 1e-9f))
     throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("seconds is %g; over %u substeps that is less than 1e-9 s a substep",
                                                     static_cast<double>(seconds), input_.substeps));
   input_.seconds = seconds;
   limit_stiffness();
   input_.colliders.clear();
+  if (cloths_.any()) index_of_slot_.assign(colliders_.size(), 0);
   for (std::size_t i = 0; i < colliders_.size(); ++i)
-    if (const Collider *c = colliders_.at_index(i); c != nullptr)
+    if (const Collider *c = colliders_.at_index(i); c != nullptr) {
+      if (cloths_.any()) index_of_slot_[i] = static_cast<int>(input_.colliders.size());
       input_.colliders.push_back({c->shape, c->friction, c->pose, c->target});
+    }
+  cloths_.use_colliders(backend_->cloth(), index_of_slot_);
   try {
     backend_->step(input_);
   } catch (const Error &) {
@@ -292,6 +278,7 @@ loam_collider_id loam_world::create_collider(const loam_collider_def &def) {
 }
 
 void loam_world::destroy_collider(loam_collider_id id) {
+  cloths_.check_unattached(static_cast<int>(colliders_.index_of(id, "collider")));
   backend_->remove_shape(colliders_.at(id, "collider").shape);
   colliders_.remove(id, "collider");
 }
@@ -303,6 +290,18 @@ void loam_world::pose_collider(loam_collider_id id, const float position[3], con
 }
 
 loam_collider_report loam_world::collider_report(loam_collider_id id) const { return colliders_.at(id, "collider").report; }
+
+// --------------------------------------------------------------------------------------------------------- cloth ---
+
+void loam_world::attach_cloth(loam_cloth_id id, const loam_cloth_attachment_def &def) {
+  int slot = -1;
+  Pose pose{};
+  if (def.collider != 0) {
+    slot = static_cast<int>(colliders_.index_of(def.collider, "collider"));
+    pose = colliders_.at(def.collider, "collider").pose;
+  }
+  cloths_.attach(backend_->cloth(), id, def, slot, pose);
+}
 
 // ----------------------------------------------------------------------------------------------------- particles ---
 

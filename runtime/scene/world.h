@@ -5,6 +5,7 @@
 
 #include <loam/loam.h>
 
+#include "scene/cloth.h"
 #include "scene/slot_table.h"
 #include "solver/backend.h"
 
@@ -42,6 +43,9 @@ public:
   void pose_collider(loam_collider_id id, const float position[3], const float rotation[4], bool at_once);
   loam_collider_report collider_report(loam_collider_id id) const;
 
+  loam::ClothScene &cloths() { return cloths_; }
+  void attach_cloth(loam_cloth_id id, const loam_cloth_attachment_def &def);
+
   std::uint64_t fill(const loam_fill_def &def);
   std::uint32_t add(const loam_particles_def &def);
   void map(loam_particle_view &view);
@@ -76,6 +80,8 @@ private:
   loam::SlotTable<Material> materials_;
   std::vector<Contact> contacts_;
   loam::SlotTable<Collider> colliders_;
+  loam::ClothScene cloths_;
+  std::vector<int> index_of_slot_; // while there is cloth: where each of colliders_ is among those of the step
   std::unique_ptr<loam::Backend> backend_;
   loam::StepInput input_{};
   bool mapped_ = false;

@@ -12,6 +12,7 @@
 #include "kernels/contact/pose.h"
 #include "kernels/materials/laws.h"
 #include "schedule/schedule.h"
+#include "solver/cloth_backend.h"
 #include "solver/collider_shape.h"
 #include "solver/execution_settings.h"
 
@@ -85,6 +86,7 @@ public:
   virtual const loam_statistics &statistics() const = 0;
   virtual const Schedule &schedule() const = 0;
   virtual std::vector<MemoryUse> memory() const = 0;
+  virtual ClothBackend &cloth() = 0;
 };
 
 // `instruction_set` of the settings is one that this machine has.

@@ -14,6 +14,7 @@
 #include "scene/error.h"
 #include "scene/pose.h"
 #include "solver/backend.h"
+#include "solver/cloth_solver.h"
 #include "solver/collider_motion.h"
 #include "solver/collider_shapes.h"
 #include "solver/stages.h"
@@ -35,6 +36,7 @@ public:
   const loam_statistics &statistics() const override { return statistics_; }
   const Schedule &schedule() const override { return schedule_; }
   std::vector<MemoryUse> memory() const override;
+  ClothBackend &cloth() override { return cloth_; }
 
 private:
   template <class T> using Array = typename Executor::template Array<T>;
@@ -75,7 +77,9 @@ private:
   void make_grid();
   void prepare_contacts(const StepInput &input, std::uint32_t index);
   void prepare_free_distances();
-  void iterate(std::uint32_t iterations);
+  using ClothSubstep = typename ClothSolver<Executor>::Substep;
+  ClothSubstep cloth_substep(const StepInput &input);
+  void iterate(const StepInput &input);
   void solve_in_turn();
   void solve_at_once();
   void correct_positions();
@@ -112,7 +116,8 @@ private:
   Executor executor_;
   SmoothingKernel kernel_;
   Schedule schedule_;
-  bool schedule_is_current_ = false, schedule_has_colliders_ = false;
+  ClothSolver<Executor> cloth_{executor_};
+  bool schedule_is_current_ = false, schedule_has_colliders_ = false, schedule_has_cloth_ = false;
   std::vector<SolverMaterial> materials_;
   int material_capacity_ = 0;
   int count_ = 0;
@@ -324,7 +329,7 @@ template <class Executor> void Solver<Executor>::map(loam_particle_view &view) {
 template <class Executor> std::uint64_t Solver<Executor>::state_hash() {
   std::uint64_t hash = 0;
   executor_.session([&] { hash = executor_.reduce(count_, StateHash{now_.arrays()}); });
-  return StateHash::mix(hash, particles());
+  return cloth_.hash(StateHash::mix(hash, particles()));
 }
 
 template <class Executor> std::vector<MemoryUse> Solver<Executor>::memory() const {
@@ -343,6 +348,7 @@ template <class Executor> std::vector<MemoryUse> Solver<Executor>::memory() cons
   }
   const std::uint64_t colliders = collider_views_.bytes() + contacts_.bytes() + shapes_.bytes();
   if (colliders > 0) uses.push_back({"colliders", colliders});
+  if (cloth_.bytes() > 0) uses.push_back({"cloth", cloth_.bytes()});
   if (densities_.bytes() > 0) uses.push_back({"mapped densities", densities_.bytes()});
   return uses;
 }

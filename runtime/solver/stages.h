@@ -1,6 +1,9 @@
 // The list of all stages over neighbours, made from the list of laws. Executors instantiate their launches from it.
 #pragma once
 
+#include "kernels/cloth/bending.h"
+#include "kernels/cloth/membrane.h"
+#include "kernels/cloth/threads.h"
 #include "kernels/inelastic/measure_constraint.h"
 #include "kernels/inelastic/projected_tensor.h"
 #include "kernels/inelastic/scalar_multiplier.h"
@@ -47,6 +50,8 @@ using TeamStages = Concatenate<
     StagesOfForm<Elastic, ProjectedTensor<false>>, // semi-implicit plasticity of matter that resists no zero-energy modes
     StagesOfLaws<Laws>::Type>::Type;
 using CandidateStages = TypeList<CountNeighbours, FillNeighbours>;
+// Over a cloth's constraints.
+using ConstraintStages = TypeList<PrepareMembrane, SolveMembrane, PrepareHinges, SolveHinges, PrepareThreads, SolveThreads>;
 
 template <class Stage, class List> struct IndexOf;
 template <class Stage, class... Rest> struct IndexOf<Stage, TypeList<Stage, Rest...>> { static constexpr int value = 0; };

@@ -20,7 +20,7 @@ template <class Executor> void Solver<Executor>::step(const StepInput &input) {
   const auto begin = std::chrono::steady_clock::now();
   executor_.lap();
   executor_.session([&] {
-    if (count_ > 0)
+    if (count_ > 0 || !cloth_.empty())
       for (std::uint32_t i = 0; i < input.substeps; ++i) {
         substep(input, i);
         ++statistics_.substeps_done;
@@ -33,15 +33,18 @@ template <class Executor> void Solver<Executor>::step(const StepInput &input) {
 }
 
 template <class Executor> void Solver<Executor>::compile_schedule(bool colliders) {
-  if (schedule_is_current_ && colliders == schedule_has_colliders_) return;
+  const bool cloth = !cloth_.empty();
+  if (schedule_is_current_ && colliders == schedule_has_colliders_ && cloth == schedule_has_cloth_) return;
   SceneContents contents;
   for (const SolverMaterial &material : materials_) contents.materials.push_back({material.name, material.in_use});
   contents.position_correction = settings_.minimum_distance > 0.0f || contact_between_materials_;
   contents.velocity_smoothing = settings_.velocity_smoothing > 0.0f;
   contents.colliders = colliders;
+  contents.cloth = cloth;
   schedule_.compile(contents);
   schedule_is_current_ = true;
   schedule_has_colliders_ = colliders;
+  schedule_has_cloth_ = cloth;
 }
 
 template <class Executor> void Solver<Executor>::make_grid() {

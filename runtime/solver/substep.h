@@ -8,18 +8,27 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
   h_ = input.seconds / static_cast<float>(input.substeps);
   const bool last = index + 1 == input.substeps;
 
-  search_neighbours(); // sort by cell; lists, corrected gradients and constraint records on x^n
+  if (count_ > 0) search_neighbours(); // sort by cell; lists, corrected gradients and constraint records on x^n
   ex.for_each(count_, ApplyForces{now_.velocities.data(), h_ * input.gravity});
   lap(schedule_.forces, particles());
   try {
     prepare_contacts(input, index);
+    if (!cloth_.empty()) {
+      cloth_.find_contacts(cloth_substep(input));
+      if (schedule_.find_cloth_contacts >= 0) lap(schedule_.find_cloth_contacts, cloth_.vertex_count());
+    }
   } catch (...) {
     // Memory for contacts was refused. Back to before the forces: the other copy still has the particles as they were before the sort.
     ex.for_each(count_, MoveParticles{other_.arrays(), now_.arrays(), order_.data(), x_.data(), y_.data(), z_.data()});
     throw;
   }
 
-  iterate(input.iterations);
+  if (!cloth_.empty()) {
+    cloth_.prepare(cloth_substep(input));
+    lap(schedule_.prepare_cloth, cloth_.constraint_count());
+  }
+
+  iterate(input);
   if (last) measure(input.gravity);
 
   if (schedule_.velocity_smoothing >= 0) {
@@ -74,20 +83,38 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
   ex.for_each(count_,
               Advance{now_.positions.data(), now_.velocities.data(), now_.log_volumes.data(), now_.rest_volumes.data(), h_});
   lap(schedule_.advance, particles());
+  if (!cloth_.empty()) {
+    cloth_.finish(cloth_substep(input), counters_.data());
+    lap(schedule_.finish_cloth, cloth_.vertex_count());
+  }
 }
 
-// The nonlinear iterations: inelastic constraints, position correction, contacts.
-template <class Executor> void Solver<Executor>::iterate(std::uint32_t iterations) {
-  for (std::uint32_t i = 0; i < iterations; ++i) {
+template <class Executor>
+typename Solver<Executor>::ClothSubstep Solver<Executor>::cloth_substep(const StepInput &input) {
+  return {h_, input.iterations, input.gravity, collider_views_.data(), static_cast<int>(views_.size()),
+          collider_motion_.greatest()};
+}
+
+// The nonlinear iterations: inelastic constraints, position correction, cloth, contacts.
+template <class Executor> void Solver<Executor>::iterate(const StepInput &input) {
+  for (std::uint32_t i = 0; i < input.iterations; ++i) {
     if (settings_.jacobi) {
       solve_at_once();
     } else {
       solve_in_turn();
     }
     if (schedule_.position_correction >= 0) correct_positions();
+    if (!cloth_.empty()) {
+      cloth_.solve(cloth_substep(input));
+      lap(schedule_.solve_cloth, cloth_.constraint_count());
+    }
     if (contact_count_ > 0) {
       executor_.for_each(contact_count_, SolveContacts{contacts_.data(), now_.velocities.data(), h_});
       lap(schedule_.contacts, static_cast<std::uint64_t>(contact_count_));
+    }
+    if (schedule_.cloth_contacts >= 0) {
+      cloth_.solve_contacts(cloth_substep(input));
+      lap(schedule_.cloth_contacts, cloth_.contact_count());
     }
   }
 }

@@ -1,0 +1,126 @@
+/* Cloth: sheets made from triangle meshes, in the same substeps and iterations as all other matter.
+ *
+ * A triangle resists stretch along warp and weft and shear between them (Baraff and Witkin 1998), an edge between two triangles resists bending
+ * (Bergou et al. 2006), all as XPBD constraints with the stiffnesses below. Threads along warp and weft keep what few iterations leave unanswered of a load from
+ * stretching the cloth.
+ *
+ * Vertices keep `thickness` from colliders, with the collider's friction, and are swept against them, so that no vertex passes a surface. What lies between
+ * vertices is not looked at: over a convex collider of radius R, edges of length L cut in by up to L^2 / (8 R), less the thickness.
+ * Cloth does not collide with itself, with other cloth, or with particles.
+ *
+ * Thread contract: as for the world.
+ */
+#ifndef LOAM_CLOTH_H
+#define LOAM_CLOTH_H
+
+#include <loam/base.h>
+#include <loam/collider.h>
+#include <loam/world.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef uint64_t loam_cloth_id;
+
+/* What a cloth is made with. Fill it with loam_cloth_def_default first. The defaults are a light cotton. */
+typedef struct loam_cloth_def {
+  uint32_t struct_size;
+  uint32_t reserved; /* 0 */
+
+  /* The shape at rest, in the cloth's own frame; copied. Each vertex is a vertex of the cloth, in this order: so vertices must not be repeated for normals or textures. Every
+   * vertex belongs to a triangle, every edge to at most two, which agree on their orientation. Within 1e4 m, at most 2^24 triangles. The way edges run matters little for
+   * stretch and shear; bending is exact on equilateral triangles and along the sides of a grid of right ones. */
+  loam_mesh mesh;
+  float position[3]; /* where the mesh's origin is at the start, metres; default 0 */
+  float rotation[4]; /* unit quaternion x, y, z, w; default identity */
+  float velocity[3]; /* m/s of all vertices at the start; default 0 */
+
+  float areal_density;     /* kg/m^2, 1e-4 to 1e4; default 0.15 */
+  float stretch_stiffness; /* force per width and strain along warp and weft, N/m, over 0 to 1e9; default 3000 */
+  float shear_stiffness;   /* force per width and shear angle, N/m, 0 to 1e9; default 300. A sheet without grain has half its stretch stiffness */
+  float bending_stiffness; /* moment per width and curvature, N m, 0 to 1e6; default 1e-5 */
+  float damping; /* of all three: stress for a rate of strain as for this many seconds of it, s, 0 to 10; default 1e-3 */
+
+  float warp[3];   /* the direction of the warp in the cloth's own frame, laid into each triangle's plane; default (1, 0, 0) */
+
+  /* How much longer than at rest a thread gets, as a share: chains of edges along warp and weft (within 15 degrees) are held to that as a whole, each by a direct solution, so
+   * that long sheets do not hang on rubber where iterations are few. It should be more than the loads stretch the cloth to; 0: no threads. 0 to 10; default 0.005. */
+  float greatest_stretch;
+  float thickness; /* the distance that vertices keep from colliders, metres, 1e-6 to 1e3; 0 (the default): half the kernel radius */
+} loam_cloth_def;
+
+/* Errors: INVALID_ARGUMENT for null or an unknown size. */
+LOAM_API loam_status loam_cloth_def_default(loam_cloth_def *def, size_t size);
+
+/* Makes a cloth. Memory for it is taken now; none is taken by steps, but for contacts with colliders, which grow when a step needs more.
+ * Errors: INVALID_ARGUMENT naming field and value (a NaN vertex, an index out of range); INVALID_MESH naming the vertices, triangle or edge (two vertices in one place, a
+ * vertex of no triangle, a triangle without area, an edge of three triangles); OUT_OF_MEMORY; CAPACITY beyond 4096 cloths in a world; IN_USE while buffers are
+ * mapped. */
+LOAM_API loam_status loam_cloth_create(loam_world *world, const loam_cloth_def *def, loam_cloth_id *cloth);
+
+/* Errors: INVALID_HANDLE; IN_USE while buffers are mapped. */
+LOAM_API loam_status loam_cloth_destroy(loam_world *world, loam_cloth_id cloth);
+
+/* ---------------------------------------------------------------------------------------------- attachments --- */
+
+/* Vertices held at points of space or of a collider, with which they then move and turn. A vertex is held by one attachment at most. */
+typedef struct loam_cloth_attachment_def {
+  uint32_t struct_size;
+  uint32_t count;           /* of vertices, at least 1 */
+  const uint32_t *vertices; /* read during the call only */
+  const float *points; /* x, y, z for each vertex, metres: in space, or in the collider's own frame. Null (the default): where each vertex is now */
+  loam_collider_id collider; /* 0 (the default): space */
+  float compliance;          /* of the spring that holds each vertex, m/N, 0 or 1e-9 to 1e9; 0 (the default): rigid */
+  uint32_t reserved;         /* 0 */
+} loam_cloth_attachment_def;
+
+/* Errors: INVALID_ARGUMENT for null or an unknown size. */
+LOAM_API loam_status loam_cloth_attachment_def_default(loam_cloth_attachment_def *def, size_t size);
+
+/* Attaches vertices, all or, on an error, none. A vertex that is not at its point goes there within the next substep if the attachment is rigid. Rigidly attached vertices
+ * pass through colliders.
+ * Errors: INVALID_HANDLE for the cloth or the collider; INVALID_ARGUMENT naming the vertex; IN_USE for a vertex that is attached already, and while buffers are
+ * mapped; OUT_OF_MEMORY. */
+LOAM_API loam_status loam_cloth_attach(loam_world *world, loam_cloth_id cloth, const loam_cloth_attachment_def *def);
+
+/* Lets go of vertices, all or, on an error, none. They keep their velocities.
+ * Errors: INVALID_HANDLE; INVALID_ARGUMENT naming the vertex that is not attached; IN_USE while buffers are mapped. */
+LOAM_API loam_status loam_cloth_release(loam_world *world, loam_cloth_id cloth, const uint32_t *vertices, uint32_t count);
+
+/* ----------------------------------------------------------------------------------------------------- wind --- */
+
+/* Air of 1.2 kg/m^3 that moves at `velocity` (m/s, each component at most 1e4) past the cloth, from the next step on. On each triangle of area A with the normal n, and with u
+ * the air's velocity past it:
+ *   drag 1/2 rho C_D A |u| |n . u| along u,  and lift 1/2 rho C_L A |u| |n . u| times the sine of their angle, across u, to the side where the cloth yields to the air.
+ * `drag` C_D and `lift` C_L are 0 to 100; with both 0, as at the start, there is no air.
+ * Errors: INVALID_HANDLE, INVALID_ARGUMENT. */
+LOAM_API loam_status loam_cloth_set_wind(loam_world *world, loam_cloth_id cloth, const float velocity[3], float drag,
+                                         float lift);
+
+/* -------------------------------------------------------------------------------------------------- buffers --- */
+
+/* The solver's own buffers, not copies: read-only, in the order of the mesh's vertices. */
+typedef struct loam_cloth_view {
+  uint32_t struct_size; /* set by the caller to sizeof(loam_cloth_view) */
+  uint32_t memory;      /* LOAM_MEMORY_*: which processor the pointers are good for */
+  uint32_t vertex_count;
+  uint32_t reserved;
+  const float *positions;  /* stride of 4 floats: x, y, z, 0 */
+  const float *velocities; /* stride of 4 floats: x, y, z, and the inverse mass in 1/kg (0: rigidly attached) */
+  const float *normals;    /* stride of 4 floats: the mean of the triangles around, of length 1 (0 where there is none), and 0 */
+} loam_cloth_view;
+
+/* Gives the pointers. They are valid until loam_cloth_unmap or loam_world_destroy; in between, calls that would change the cloth fail with IN_USE. Costs no copy, except
+ * `normals`, which are computed by this call.
+ * Errors: INVALID_HANDLE; INVALID_ARGUMENT; IN_USE if mapped already; OUT_OF_MEMORY. */
+LOAM_API loam_status loam_cloth_map(loam_world *world, loam_cloth_id cloth, loam_cloth_view *view);
+
+/* Ends the mapping. Errors: INVALID_HANDLE; INVALID_ARGUMENT if the cloth is not mapped. */
+LOAM_API loam_status loam_cloth_unmap(loam_world *world, loam_cloth_id cloth);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

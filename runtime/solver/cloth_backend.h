@@ -1,0 +1,69 @@
+// What the scene says to the solver about cloth. Part of the interface in backend.h.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <loam/cloth.h>
+
+#include "math/vector.h"
+
+namespace loam {
+
+// Constraints of one kind, colour by colour.
+struct ClothConstraintList {
+  std::vector<int> indices;  // vertices, so many a constraint as the kind has
+  std::vector<float> fields; // its first fields, see kernels/cloth/constraints.h
+  std::vector<int> starts;   // of each colour, in constraints; one more entry than colours
+};
+
+// Threads, colour by colour, and in each from long to short.
+struct ClothThreadList {
+  static constexpr float no_link = 1e30f;
+  std::vector<int> vertices;                        // of all threads
+  std::vector<float> greatest_lengths, compliances; // at each vertex: of the link to the thread's next; no_link at its last
+  std::vector<int> starts;                          // of each thread in `vertices`; one more entry than threads
+  std::vector<int> colours;                         // of each colour, in threads; one more entry than colours
+};
+
+struct ClothMaterial {
+  float stretch, shear; // N/m
+  float bending;        // N m
+  float damping;        // s
+  float areal_density;  // kg/m^2
+  float thickness;      // m: the distance that is kept from colliders
+};
+
+struct ClothWind {
+  Vec3<float> velocity; // m/s
+  float drag, lift;     // coefficients
+};
+
+struct SolverCloth {
+  std::vector<Row> positions, velocities; // as for particles; positions.w is 0
+  std::vector<int> triangles;             // three vertices each
+  ClothConstraintList membrane, hinges;
+  ClothThreadList threads;
+  ClothMaterial material;
+};
+
+struct SolverAttachment {
+  int vertex;
+  int collider;      // index in StepInput::colliders; -1: space
+  Vec3<float> point; // in the collider's frame, or in space
+  float stiffness;   // N/m; 0: rigid
+};
+
+class ClothBackend {
+public:
+  virtual ~ClothBackend() = default;
+  virtual int add(const SolverCloth &cloth) = 0;
+  virtual void remove(int cloth) = 0;
+  // All attachments of a cloth, in place of those before.
+  virtual void set_attachments(int cloth, const std::vector<SolverAttachment> &attachments) = 0;
+  virtual void set_wind(int cloth, const ClothWind &wind) = 0;
+  virtual std::vector<Row> positions(int cloth) = 0;
+  virtual void map(int cloth, loam_cloth_view &view) = 0;
+};
+
+} // namespace loam

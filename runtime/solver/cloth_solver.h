@@ -1,0 +1,397 @@
+// The cloths of a solver, over any executor: their state, and their stages of a substep. A world without cloth has none of them.
+//
+// A substep of a cloth, beside that of the particles in substep.h:
+//
+//   find_contacts   planes that hold vertices back, before anything has changed: memory may be refused
+//   prepare         forces; edges and offsets of all constraints; where attachments are going
+//   iterate         hinges, membrane, threads, attachments; contacts
+//   finish          the greatest speed, contacts once more and swept, the move
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "kernels/cloth/bending.h"
+#include "kernels/cloth/membrane.h"
+#include "kernels/cloth/threads.h"
+#include "kernels/cloth/vertices.h"
+#include "kernels/contact/find_contacts.h"
+#include "kernels/contact/solve_contacts.h"
+#include "kernels/contact/sweep_contacts.h"
+#include "kernels/integration/integrate.h"
+#include "schedule/schedule.h"
+#include "solver/cloth_backend.h"
+
+namespace loam {
+
+template <class Executor> class ClothSolver final : public ClothBackend {
+public:
+  explicit ClothSolver(Executor &executor) : executor_(executor) {}
+
+  int add(const SolverCloth &description) override;
+  void remove(int cloth) override;
+  void set_attachments(int cloth, const std::vector<SolverAttachment> &attachments) override;
+  void set_wind(int cloth, const ClothWind &wind) override { at(cloth).wind = wind; }
+  std::vector<Row> positions(int cloth) override;
+  void map(int cloth, loam_cloth_view &view) override;
+
+  bool empty() const { return in_use_ == 0; }
+  std::uint64_t bytes() const;
+  // `hash` with the cloths' state in it; as it is where there are none.
+  std::uint64_t hash(std::uint64_t hash);
+
+  // What a substep needs to know.
+  struct Substep {
+    float seconds;
+    std::uint32_t iterations;
+    Vec3<float> gravity;
+    const ColliderView *colliders;
+    int collider_count;
+    float collider_motion; // the most that a point of any collider moves
+  };
+  void find_contacts(const Substep &substep);
+  void prepare(const Substep &substep);
+  void solve(const Substep &substep);
+  void solve_contacts(const Substep &substep);
+  void finish(const Substep &substep, int *speed_limited);
+  std::uint64_t constraint_count() const { return constraints_; }
+  std::uint64_t vertex_count() const { return vertices_; }
+  std::uint64_t contact_count() const;
+
+private:
+  template <class T> using Array = typename Executor::template Array<T>;
+
+  struct Constraints {
+    Array<int> indices;
+    Array<float> fields;
+    std::vector<int> batches; // where each colour begins; one more entry than colours
+    ClothConstraints view() { return {indices.data(), fields.data()}; }
+    int batch_count() const { return batches.empty() ? 0 : batches.back(); }
+  };
+  struct Cloth {
+    Array<Row> positions, velocities, normals;
+    Array<int> triangles, starts, around; // for normals: the triangles around each vertex
+    Constraints membrane, hinges;
+    Constraints threads; // batches of threads
+    Array<int> thread_starts;
+    ClothThreads thread_view() { return {threads.view(), thread_starts.data()}; }
+    Array<Attachment> attachments;
+    Array<Contact> contacts;
+    Array<int> contact_counter;
+    std::vector<float> inverse_masses;
+    std::vector<SolverAttachment> attached;
+    ClothMaterial material{};
+    ClothWind wind{};
+    int vertex_count = 0, attachment_count = 0, contact_count = 0;
+    std::uint64_t constraint_count = 0; // three a triangle, one a hinge
+    float reach = 0; // the most that a vertex moves in this substep
+    bool in_use = false;
+  };
+
+  Cloth &at(int cloth) { return cloths_[static_cast<std::size_t>(cloth)]; }
+  template <class F> void for_each_cloth(F &&f) {
+    for (Cloth &cloth : cloths_)
+      if (cloth.in_use) f(cloth);
+  }
+  template <class T> void copy_in(Array<T> &array, const std::vector<T> &values) {
+    array.reserve(std::max<std::size_t>(values.size(), 1));
+    executor_.upload(array.data(), values.data(), values.size());
+  }
+  template <class Field> Constraints interleave(const ClothConstraintList &list, int spare_vertex);
+  void add_threads(Cloth &cloth, const ClothThreadList &list);
+  template <class Stage> void for_each_colour(const Constraints &constraints, const Stage &stage) {
+    for (std::size_t c = 0; c + 1 < constraints.batches.size(); ++c)
+      executor_.for_each_constraint(constraints.batches[c], constraints.batches[c + 1], stage);
+  }
+  Cloth make_empty() {
+    const auto constraints = [&] {
+      return Constraints{executor_.template array<int>(), executor_.template array<float>(), {}};
+    };
+    return {executor_.template array<Row>(),
+            executor_.template array<Row>(),
+            executor_.template array<Row>(),
+            executor_.template array<int>(),
+            executor_.template array<int>(),
+            executor_.template array<int>(),
+            constraints(),
+            constraints(),
+            constraints(),
+            executor_.template array<int>(),
+            executor_.template array<Attachment>(),
+            executor_.template array<Contact>(),
+            executor_.template array<int>(),
+            {},
+            {}};
+  }
+
+  Executor &executor_;
+  std::vector<Cloth> cloths_;
+  int in_use_ = 0;
+  std::uint64_t constraints_ = 0, vertices_ = 0;
+};
+
+// ------------------------------------------------------------------------------------------------ what there is ---
+
+template <class Executor>
+template <class Field>
+typename ClothSolver<Executor>::Constraints ClothSolver<Executor>::interleave(const ClothConstraintList &list,
+                                                                              int spare_vertex) {
+  const auto width = static_cast<std::size_t>(executor_.constraint_width());
+  constexpr std::size_t vertices = Field::vertices, fields = Field::count;
+  const std::size_t count = list.indices.size() / vertices, given = count > 0 ? list.fields.size() / count : 0;
+  Constraints result = {executor_.template array<int>(), executor_.template array<float>(), {0}};
+  for (std::size_t c = 0; c + 1 < list.starts.size(); ++c) {
+    const auto size = static_cast<std::size_t>(list.starts[c + 1] - list.starts[c]);
+    result.batches.push_back(result.batches.back() + static_cast<int>((size + width - 1) / width));
+  }
+  const auto batches = static_cast<std::size_t>(result.batch_count());
+  std::vector<int> indices(batches * vertices * width);
+  std::vector<float> values(batches * fields * width);
+  for (std::size_t c = 0; c + 1 < list.starts.size(); ++c) {
+    const auto first = static_cast<std::size_t>(list.starts[c]), last = static_cast<std::size_t>(list.starts[c + 1]);
+    const auto base = static_cast<std::size_t>(result.batches[c]) * width;
+    const auto end = static_cast<std::size_t>(result.batches[c + 1]) * width;
+    for (std::size_t place = base; place < end; ++place) {
+      const std::size_t batch = place / width, lane = place % width, i = first + (place - base);
+      for (std::size_t k = 0; k < vertices; ++k)
+        indices[(batch * vertices + k) * width + lane] =
+            i < last ? list.indices[i * vertices + k] : spare_vertex + static_cast<int>(lane);
+      for (std::size_t f = 0; f < given; ++f)
+        values[(batch * fields + f) * width + lane] = i < last ? list.fields[i * given + f] : 0.0f;
+    }
+  }
+  copy_in(result.indices, indices);
+  copy_in(result.fields, values);
+  return result;
+}
+
+template <class Executor> void ClothSolver<Executor>::add_threads(Cloth &cloth, const ClothThreadList &list) {
+  const auto width = static_cast<std::size_t>(executor_.constraint_width());
+  std::vector<int> starts = {0}, indices;
+  std::vector<float> values;
+  cloth.threads.batches = {0};
+  for (std::size_t c = 0; c + 1 < list.colours.size(); ++c) {
+    const auto end = static_cast<std::size_t>(list.colours[c + 1]);
+    for (auto first = static_cast<std::size_t>(list.colours[c]); first < end; first += width) {
+      // The first is the longest.
+      const auto places = static_cast<std::size_t>(list.starts[first + 1] - list.starts[first]);
+      const auto base = static_cast<std::size_t>(starts.back());
+      starts.push_back(static_cast<int>(base + places));
+      indices.resize((base + places) * width);
+      values.resize((base + places) * width * LinkField::count);
+      for (std::size_t j = 0; j < places; ++j)
+        for (std::size_t lane = 0; lane < width; ++lane) {
+          // Lanes stay at their last vertex when their thread has ended; those without a thread are at a spare vertex.
+          int vertex = cloth.vertex_count + static_cast<int>(lane);
+          float longest = ClothThreadList::no_link, compliance = 1;
+          if (const std::size_t thread = first + lane; thread < end) {
+            const auto begin = static_cast<std::size_t>(list.starts[thread]), last = static_cast<std::size_t>(list.starts[thread + 1]) - 1;
+            const std::size_t at = std::min(begin + j, last);
+            vertex = list.vertices[at];
+            longest = list.greatest_lengths[at];
+            compliance = list.compliances[at];
+          }
+          indices[(base + j) * width + lane] = vertex;
+          values[((base + j) * LinkField::count + LinkField::greatest_length) * width + lane] = longest;
+          values[((base + j) * LinkField::count + LinkField::compliance) * width + lane] = compliance;
+        }
+    }
+    cloth.threads.batches.push_back(static_cast<int>(starts.size()) - 1);
+  }
+  copy_in(cloth.threads.indices, indices);
+  copy_in(cloth.threads.fields, values);
+  copy_in(cloth.thread_starts, starts);
+}
+
+template <class Executor> int ClothSolver<Executor>::add(const SolverCloth &description) {
+  const std::size_t n = description.positions.size(), triangles = description.triangles.size() / 3;
+  Cloth cloth = make_empty();
+  cloth.vertex_count = static_cast<int>(n);
+  cloth.material = description.material;
+  // Spare vertices, one a lane, stay at the origin: their inverse mass is 0.
+  const std::size_t rows = n + static_cast<std::size_t>(executor_.constraint_width());
+  cloth.positions.reserve(rows);
+  cloth.velocities.reserve(rows);
+  executor_.upload(cloth.positions.data(), description.positions.data(), n);
+  executor_.upload(cloth.velocities.data(), description.velocities.data(), n);
+  for (const Row &row : description.velocities) cloth.inverse_masses.push_back(row.w);
+  copy_in(cloth.triangles, description.triangles);
+  std::vector<int> starts(n + 1), around(3 * triangles);
+  for (const int v : description.triangles) ++starts[static_cast<std::size_t>(v) + 1];
+  for (std::size_t i = 0; i < n; ++i) starts[i + 1] += starts[i];
+  std::vector<int> next = starts;
+  for (std::size_t i = 0; i < 3 * triangles; ++i)
+    around[static_cast<std::size_t>(next[static_cast<std::size_t>(description.triangles[i])]++)] = static_cast<int>(i / 3);
+  copy_in(cloth.starts, starts);
+  copy_in(cloth.around, around);
+  cloth.membrane = interleave<MembraneField>(description.membrane, static_cast<int>(n));
+  cloth.hinges = interleave<HingeField>(description.hinges, static_cast<int>(n));
+  add_threads(cloth, description.threads);
+  cloth.contact_counter.reserve(1);
+  const std::uint64_t constraint_count = 3 * triangles + description.hinges.indices.size() / 4;
+  cloth.constraint_count = constraint_count;
+  cloth.in_use = true;
+  const auto free = std::find_if(cloths_.begin(), cloths_.end(), [](const Cloth &c) { return !c.in_use; });
+  const int index = static_cast<int>(free - cloths_.begin());
+  if (free == cloths_.end())
+    cloths_.push_back(std::move(cloth));
+  else
+    *free = std::move(cloth);
+  ++in_use_;
+  vertices_ += n;
+  constraints_ += constraint_count;
+  return index;
+}
+
+template <class Executor> void ClothSolver<Executor>::remove(int index) {
+  Cloth &cloth = at(index);
+  vertices_ -= static_cast<std::uint64_t>(cloth.vertex_count);
+  constraints_ -= cloth.constraint_count;
+  cloth = make_empty();
+  --in_use_;
+}
+
+template <class Executor>
+void ClothSolver<Executor>::set_attachments(int index, const std::vector<SolverAttachment> &attachments) {
+  Cloth &cloth = at(index);
+  std::vector<Attachment> now;
+  for (const SolverAttachment &a : attachments) now.push_back({a.vertex, a.collider, a.point, a.stiffness, {}, {}});
+  copy_in(cloth.attachments, now); // may be refused; nothing has changed yet
+  const auto set_inverse_mass = [&](int vertex, float inverse_mass) {
+    Row *row = cloth.velocities.data() + vertex;
+    Row value = executor_.read(row);
+    value.w = inverse_mass;
+    executor_.upload(row, &value, 1);
+  };
+  for (const SolverAttachment &a : cloth.attached)
+    if (a.stiffness == 0.0f) set_inverse_mass(a.vertex, cloth.inverse_masses[static_cast<std::size_t>(a.vertex)]);
+  for (const SolverAttachment &a : attachments)
+    if (a.stiffness == 0.0f) set_inverse_mass(a.vertex, 0.0f);
+  cloth.attached = attachments;
+  cloth.attachment_count = static_cast<int>(attachments.size());
+}
+
+template <class Executor> std::vector<Row> ClothSolver<Executor>::positions(int index) {
+  Cloth &cloth = at(index);
+  std::vector<Row> rows(static_cast<std::size_t>(cloth.vertex_count));
+  executor_.download(rows.data(), cloth.positions.data(), rows.size());
+  return rows;
+}
+
+template <class Executor> void ClothSolver<Executor>::map(int index, loam_cloth_view &view) {
+  Cloth &cloth = at(index);
+  cloth.normals.reserve(static_cast<std::size_t>(cloth.vertex_count));
+  executor_.session([&] {
+    executor_.for_each(cloth.vertex_count, ComputeNormals{cloth.positions.data(), cloth.triangles.data(), cloth.starts.data(),
+                                                          cloth.around.data(), cloth.normals.data()});
+  });
+  view.memory = Executor::memory_kind;
+  view.vertex_count = static_cast<std::uint32_t>(cloth.vertex_count);
+  view.positions = &cloth.positions.data()->x;
+  view.velocities = &cloth.velocities.data()->x;
+  view.normals = &cloth.normals.data()->x;
+}
+
+template <class Executor> std::uint64_t ClothSolver<Executor>::bytes() const {
+  std::uint64_t sum = 0;
+  for (const Cloth &c : cloths_)
+    sum += c.positions.bytes() + c.velocities.bytes() + c.normals.bytes() + c.triangles.bytes() + c.starts.bytes() +
+           c.around.bytes() + c.membrane.indices.bytes() + c.membrane.fields.bytes() + c.hinges.indices.bytes() +
+           c.hinges.fields.bytes() + c.threads.indices.bytes() + c.threads.fields.bytes() + c.thread_starts.bytes() + c.attachments.bytes() + c.contacts.bytes() + c.contact_counter.bytes();
+  return sum;
+}
+
+template <class Executor> std::uint64_t ClothSolver<Executor>::hash(std::uint64_t hash) {
+  executor_.session([&] {
+    for_each_cloth([&](Cloth &cloth) {
+      hash = StateHash::mix(hash, executor_.reduce(cloth.vertex_count, HashRows{cloth.positions.data()}));
+      hash = StateHash::mix(hash, executor_.reduce(cloth.vertex_count, HashRows{cloth.velocities.data()}));
+    });
+  });
+  return hash;
+}
+
+// --------------------------------------------------------------------------------------------------- a substep ---
+
+template <class Executor> void ClothSolver<Executor>::find_contacts(const Substep &s) {
+  for_each_cloth([&](Cloth &cloth) {
+    const float greatest = executor_.reduce(cloth.vertex_count, GreatestSpeed{cloth.velocities.data()});
+    // Twice as far as the fastest vertex goes, and as a fall from rest goes in a few substeps; nothing of the sort of a grid bounds it.
+    cloth.reach = cloth.material.thickness + s.collider_motion +
+                  s.seconds * (4.0f * greatest + 4.0f * s.seconds * length(s.gravity) + 2.0f * length(cloth.wind.velocity));
+    cloth.contact_count = 0;
+    if (s.collider_count == 0) return;
+    for (int attempt = 0; attempt < 2; ++attempt) {
+      executor_.set(cloth.contact_counter.data(), 1, 0);
+      executor_.for_each(cloth.vertex_count,
+                         FindContacts{cloth.positions.data(), cloth.velocities.data(), s.colliders, s.collider_count, s.seconds,
+                                      cloth.material.thickness, cloth.reach, cloth.contacts.data(),
+                                      static_cast<int>(cloth.contacts.capacity()), cloth.contact_counter.data()});
+      cloth.contact_count = executor_.read(cloth.contact_counter.data());
+      if (static_cast<std::size_t>(cloth.contact_count) <= cloth.contacts.capacity()) break;
+      const auto found = static_cast<std::size_t>(cloth.contact_count);
+      cloth.contacts.reserve(std::min(found + found / 4 + 256, static_cast<std::size_t>(cloth.vertex_count)));
+    }
+  });
+}
+
+template <class Executor> void ClothSolver<Executor>::prepare(const Substep &s) {
+  for_each_cloth([&](Cloth &cloth) {
+    Row *velocities = cloth.velocities.data();
+    const float h = s.seconds;
+    executor_.for_each(cloth.vertex_count, ApplyForces{velocities, h * s.gravity});
+    executor_.for_each(cloth.attachment_count, PrepareAttachments{cloth.attachments.data(), s.colliders,
+                                                                  cloth.positions.data(), velocities, h});
+    constexpr float air_density = 1.2f;
+    const float air = 0.5f * h * air_density / cloth.material.areal_density;
+    const ClothWind &wind = cloth.wind;
+    for_each_colour(cloth.membrane, PrepareMembrane{cloth.membrane.view(),
+                                                    cloth.positions.data(),
+                                                    velocities,
+                                                    {wind.velocity, air * wind.drag, air * wind.lift,
+                                                     cloth.material.areal_density}});
+    for_each_colour(cloth.hinges, PrepareHinges{cloth.hinges.view(), cloth.positions.data()});
+    for_each_colour(cloth.threads, PrepareThreads{cloth.thread_view(), cloth.positions.data()});
+  });
+}
+
+template <class Executor> void ClothSolver<Executor>::solve(const Substep &s) {
+  for_each_cloth([&](Cloth &cloth) {
+    Row *velocities = cloth.velocities.data();
+    const ClothMaterial &m = cloth.material;
+    const float h = s.seconds, tau = m.damping / h;
+    for_each_colour(cloth.hinges, SolveHinges{cloth.hinges.view(), velocities, h, m.bending, tau});
+    for_each_colour(cloth.membrane, SolveMembrane{cloth.membrane.view(), velocities, h, {m.stretch, m.shear, tau}});
+    for_each_colour(cloth.threads, SolveThreads{cloth.thread_view(), velocities, h});
+    executor_.for_each(cloth.attachment_count, SolveAttachments{cloth.attachments.data(), velocities, h});
+  });
+}
+
+template <class Executor> void ClothSolver<Executor>::solve_contacts(const Substep &s) {
+  for_each_cloth([&](Cloth &cloth) {
+    executor_.for_each(cloth.contact_count, SolveContacts{cloth.contacts.data(), cloth.velocities.data(), s.seconds});
+  });
+}
+
+template <class Executor> void ClothSolver<Executor>::finish(const Substep &s, int *speed_limited) {
+  for_each_cloth([&](Cloth &cloth) {
+    Row *velocities = cloth.velocities.data();
+    const float fastest = cloth.reach / s.seconds;
+    executor_.for_each(cloth.vertex_count, LimitSpeed{velocities, fastest, speed_limited});
+    executor_.for_each(cloth.contact_count, SolveContactsWithinLimit{{cloth.contacts.data(), velocities, s.seconds},
+                                                                     fastest,
+                                                                     speed_limited});
+    executor_.for_each(cloth.contact_count,
+                       SweepContacts{cloth.contacts.data(), cloth.positions.data(), velocities, s.colliders, s.collider_count,
+                                     s.seconds, 0.05f * cloth.material.thickness});
+    executor_.for_each(cloth.vertex_count, AdvanceVertices{cloth.positions.data(), velocities, s.seconds});
+  });
+}
+
+template <class Executor> std::uint64_t ClothSolver<Executor>::contact_count() const {
+  std::uint64_t sum = 0;
+  for (const Cloth &cloth : cloths_) sum += static_cast<std::uint64_t>(cloth.contact_count);
+  return sum;
+}
+
+} // namespace loam
