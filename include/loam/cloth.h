@@ -30,7 +30,7 @@ typedef struct loam_cloth_def {
 
   /* The shape at rest, in the cloth's own frame; copied. Each vertex is a vertex of the cloth, in this order: so vertices must not be repeated for normals or textures. Every
    * vertex belongs to a triangle, every edge to at most two, which agree on their orientation. Within 1e4 m, at most 2^24 triangles. The way edges run matters little for
-   * stretch and shear; bending is exact on equilateral triangles and along the sides of a grid of right ones. */
+   * stretch and shear; bending, exact on equilateral triangles, is up to a sixth softer along the sides of a grid. */
   loam_mesh mesh;
   float position[3]; /* where the mesh's origin is at the start, metres; default 0 */
   float rotation[4]; /* unit quaternion x, y, z, w; default identity */
@@ -38,16 +38,19 @@ typedef struct loam_cloth_def {
 
   float areal_density;     /* kg/m^2, 1e-4 to 1e4; default 0.15 */
   float stretch_stiffness; /* force per width and strain along warp and weft, N/m, over 0 to 1e9; default 3000 */
-  float shear_stiffness;   /* force per width and shear angle, N/m, 0 to 1e9; default 300. A sheet without grain has half its stretch stiffness */
-  float bending_stiffness; /* moment per width and curvature, N m, 0 to 1e6; default 1e-5 */
+  float
+      shear_stiffness; /* force per width and shear angle, N/m, 0 to 1e9; default 60. A sheet without grain has half its stretch stiffness */
+  float
+      bending_stiffness; /* moment per width and curvature, N m, 0 to 1e6; default 1e-5. Much stiffer sheets (card) need many iterations and short substeps */
   float damping; /* of all three: stress for a rate of strain as for this many seconds of it, s, 0 to 10; default 1e-3 */
 
-  float warp[3];   /* the direction of the warp in the cloth's own frame, laid into each triangle's plane; default (1, 0, 0) */
+  float warp[3]; /* the direction of the warp in the cloth's own frame, laid into each triangle's plane; default (1, 0, 0) */
 
   /* How much longer than at rest a thread gets, as a share: chains of edges along warp and weft (within 15 degrees) are held to that as a whole, each by a direct solution, so
    * that long sheets do not hang on rubber where iterations are few. It should be more than the loads stretch the cloth to; 0: no threads. 0 to 10; default 0.005. */
   float greatest_stretch;
-  float thickness; /* the distance that vertices keep from colliders, metres, 1e-6 to 1e3; 0 (the default): half the kernel radius */
+  float
+      thickness; /* the distance that vertices keep from colliders, metres, 1e-6 to 1e3; 0 (the default): half the kernel radius */
 } loam_cloth_def;
 
 /* Errors: INVALID_ARGUMENT for null or an unknown size. */
@@ -69,7 +72,8 @@ typedef struct loam_cloth_attachment_def {
   uint32_t struct_size;
   uint32_t count;           /* of vertices, at least 1 */
   const uint32_t *vertices; /* read during the call only */
-  const float *points; /* x, y, z for each vertex, metres: in space, or in the collider's own frame. Null (the default): where each vertex is now */
+  const float *
+      points; /* x, y, z for each vertex, metres: in space, or in the collider's own frame. Null (the default): where each vertex is now */
   loam_collider_id collider; /* 0 (the default): space */
   float compliance;          /* of the spring that holds each vertex, m/N, 0 or 1e-9 to 1e9; 0 (the default): rigid */
   uint32_t reserved;         /* 0 */
@@ -108,7 +112,8 @@ typedef struct loam_cloth_view {
   uint32_t reserved;
   const float *positions;  /* stride of 4 floats: x, y, z, 0 */
   const float *velocities; /* stride of 4 floats: x, y, z, and the inverse mass in 1/kg (0: rigidly attached) */
-  const float *normals;    /* stride of 4 floats: the mean of the triangles around, of length 1 (0 where there is none), and 0 */
+  const float
+      *normals; /* stride of 4 floats: the mean of the triangles around, of length 1 (0 where there is none), and 0 */
 } loam_cloth_view;
 
 /* Gives the pointers. They are valid until loam_cloth_unmap or loam_world_destroy; in between, calls that would change the cloth fail with IN_USE. Costs no copy, except

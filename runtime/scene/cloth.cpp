@@ -16,7 +16,7 @@ loam_cloth_def default_cloth() {
   def.rotation[3] = 1;
   def.areal_density = 0.15f;
   def.stretch_stiffness = 3000;
-  def.shear_stiffness = 300;
+  def.shear_stiffness = 60;
   def.bending_stiffness = 1e-5f;
   def.damping = 1e-3f;
   def.warp[0] = 1;
@@ -52,7 +52,8 @@ ClothConstraintList sorted(const std::vector<int> &indices, const std::vector<fl
   list.fields.reserve(fields.size());
   for (const int i : colours.order) {
     const auto constraint = static_cast<std::size_t>(i);
-    list.indices.insert(list.indices.end(), indices.data() + constraint * vertices, indices.data() + (constraint + 1) * vertices);
+    list.indices.insert(list.indices.end(), indices.data() + constraint * vertices,
+                        indices.data() + (constraint + 1) * vertices);
     list.fields.insert(list.fields.end(), fields.data() + constraint * width, fields.data() + (constraint + 1) * width);
   }
   return list;
@@ -123,8 +124,8 @@ SolverCloth make_cloth(const loam_cloth_def &def, const ClothMesh &mesh, float t
   check_definition(def);
   const Pose pose = make_pose(def.position, def.rotation);
   SolverCloth cloth;
-  cloth.material = {def.stretch_stiffness, def.shear_stiffness, def.bending_stiffness, def.damping, def.areal_density,
-                    def.thickness != 0.0f ? def.thickness : thickness};
+  cloth.material = {def.stretch_stiffness, def.shear_stiffness, def.bending_stiffness,
+                    def.damping,           def.areal_density,   def.thickness != 0.0f ? def.thickness : thickness};
   std::vector<double> masses(mesh.vertices.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     masses[static_cast<std::size_t>(mesh.triangles[i])] += double(def.areal_density) * double(mesh.areas[i / 3]) / 3;
@@ -214,8 +215,7 @@ void ClothScene::attach(ClothBackend &backend, loam_cloth_id id, const loam_clot
     } else {
       point = collider < 0 ? xyz(now[v]) : to_local(pose, xyz(now[v]));
     }
-    attachments.push_back(
-        {static_cast<int>(v), collider, point, def.compliance > 0.0f ? 1.0f / def.compliance : 0.0f});
+    attachments.push_back({static_cast<int>(v), collider, point, def.compliance > 0.0f ? 1.0f / def.compliance : 0.0f});
   }
   cloth.attachments.swap(attachments);
   try {
@@ -271,8 +271,9 @@ void ClothScene::check_unattached(int collider_slot) const {
     if (const Cloth *cloth = cloths_.at_index(i); cloth != nullptr)
       for (const SolverAttachment &a : cloth->attachments)
         if (a.collider == collider_slot)
-          throw Error(LOAM_ERROR_IN_USE,
-                      format("vertex %d of a cloth is attached to the collider; release it or destroy the cloth first", a.vertex));
+          throw Error(
+              LOAM_ERROR_IN_USE,
+              format("vertex %d of a cloth is attached to the collider; release it or destroy the cloth first", a.vertex));
 }
 
 void ClothScene::use_colliders(ClothBackend &backend, const std::vector<int> &index_of_slot) {

@@ -21,12 +21,14 @@ void check_arrays(const loam_mesh &mesh) {
   check_range("mesh.vertex_count", mesh.vertex_count, 3, most_triangles);
   for (std::size_t i = 0; i < std::size_t(mesh.vertex_count) * 3; ++i)
     if (!(std::fabs(double(mesh.positions[i])) <= greatest_coordinate))
-      throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("mesh.positions[%zu] (vertex %zu) is %g, must be finite and within +-%g", i,
-                                                      i / 3, double(mesh.positions[i]), greatest_coordinate));
+      throw Error(LOAM_ERROR_INVALID_ARGUMENT,
+                  format("mesh.positions[%zu] (vertex %zu) is %g, must be finite and within +-%g", i, i / 3,
+                         double(mesh.positions[i]), greatest_coordinate));
   for (std::size_t i = 0; i < std::size_t(mesh.triangle_count) * 3; ++i)
     if (mesh.indices[i] >= mesh.vertex_count)
-      throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("mesh.indices[%zu] (triangle %zu) is %u, must be under vertex_count, %u",
-                                                      i, i / 3, mesh.indices[i], mesh.vertex_count));
+      throw Error(LOAM_ERROR_INVALID_ARGUMENT,
+                  format("mesh.indices[%zu] (triangle %zu) is %u, must be under vertex_count, %u", i, i / 3, mesh.indices[i],
+                         mesh.vertex_count));
 }
 
 void check_vertices(const ClothMesh &mesh) {
@@ -66,8 +68,8 @@ void measure_areas(ClothMesh &mesh) {
     const double longest = std::max({dot(ab, ab), dot(ac, ac), dot(bc, bc)}), twice = length(cross(ab, ac));
     // A height under a ten-thousandth of the longest edge makes strains of rounding errors.
     if (!(twice > 1e-4 * longest) || !(twice > 2e-14))
-      throw Error(LOAM_ERROR_INVALID_MESH, format("mesh triangle %zu (vertices %d, %d, %d) has no area: %g m^2", t, v[0], v[1],
-                                                  v[2], 0.5 * twice));
+      throw Error(LOAM_ERROR_INVALID_MESH,
+                  format("mesh triangle %zu (vertices %d, %d, %d) has no area: %g m^2", t, v[0], v[1], v[2], 0.5 * twice));
     mesh.areas.push_back(static_cast<float>(0.5 * twice));
   }
 }
@@ -95,9 +97,9 @@ void find_edges(ClothMesh &mesh) {
     const Use &first = uses[begin];
     if (end - begin > 2)
       throw Error(LOAM_ERROR_INVALID_MESH,
-                  format("mesh edge %d-%d belongs to %zu triangles (%d, %d, %d%s); cloth has at most two at an edge", first.low,
-                         first.high, end - begin, first.triangle, uses[begin + 1].triangle, uses[begin + 2].triangle,
-                         end - begin > 3 ? ", ..." : ""));
+                  format("mesh edge %d-%d belongs to %zu triangles (%d, %d, %d%s); cloth has at most two at an edge",
+                         first.low, first.high, end - begin, first.triangle, uses[begin + 1].triangle,
+                         uses[begin + 2].triangle, end - begin > 3 ? ", ..." : ""));
     float area = 0;
     for (std::size_t k = begin; k < end; ++k) area += mesh.areas[at(uses[k].triangle)];
     mesh.edges.push_back({first.low, first.high, first.triangle, area});

@@ -15,7 +15,8 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 class ThreadFinder {
 public:
-  ThreadFinder(const ClothMesh &mesh, const Vector &warp) : mesh_(mesh), free_(mesh.edges.size()), edges_of_(mesh.vertices.size()) {
+  ThreadFinder(const ClothMesh &mesh, const Vector &warp)
+      : mesh_(mesh), free_(mesh.edges.size()), edges_of_(mesh.vertices.size()) {
     for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
       if (!runs_along(mesh.edges[e], warp)) continue;
       free_[e] = true;
@@ -100,7 +101,8 @@ Vec3<double> warp_in_plane(const Vec3<double> &warp, const Vec3<double> &normal)
   return (1 / length(along)) * along;
 }
 
-ClothThreadList make_threads(const ClothMesh &mesh, const Vec3<double> &warp, double greatest_stretch, double stretch_stiffness) {
+ClothThreadList make_threads(const ClothMesh &mesh, const Vec3<double> &warp, double greatest_stretch,
+                             double stretch_stiffness) {
   const auto found = ThreadFinder(mesh, warp).find();
   std::vector<int> vertices, starts = {0};
   for (const auto &thread : found) {
@@ -124,7 +126,8 @@ ClothThreadList make_threads(const ClothMesh &mesh, const Vec3<double> &warp, do
         const Vec3<float> d = mesh.vertices[at(thread.vertices[j + 1])] - mesh.vertices[at(thread.vertices[j])];
         const double rest = static_cast<double>(length(d));
         longest = static_cast<float>(rest * (1 + greatest_stretch));
-        compliance = static_cast<float>(rest * rest / (10 * stretch_stiffness * double(mesh.edges[at(thread.edges[j])].area)));
+        compliance =
+            static_cast<float>(rest * rest / (10 * stretch_stiffness * double(mesh.edges[at(thread.edges[j])].area)));
       }
       list.greatest_lengths.push_back(longest);
       list.compliances.push_back(compliance);

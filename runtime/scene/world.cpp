@@ -74,8 +74,7 @@ using namespace loam;
 
 loam_world::loam_world(const loam_world_def &def)
     : def_(def), tag_(next_tag()), materials_(IdKind::material, "material", tag_, 4096),
-      colliders_(IdKind::collider, "collider", tag_, 4096),
-      cloths_(tag_, 0.5f * def.kernel_radius) {
+      colliders_(IdKind::collider, "collider", tag_, 4096), cloths_(tag_, 0.5f * def.kernel_radius) {
   execution_ = {def.allocator, def.job_system, def.thread_count, def.instruction_set};
   if (execution_.instruction_set == LOAM_INSTRUCTION_SET_AUTO) execution_.instruction_set = best_instruction_set();
   if (kernel_table(execution_.instruction_set) == nullptr)

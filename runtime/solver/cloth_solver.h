@@ -84,7 +84,7 @@ private:
     ClothWind wind{};
     int vertex_count = 0, attachment_count = 0, contact_count = 0;
     std::uint64_t constraint_count = 0; // three a triangle, one a hinge
-    float reach = 0; // the most that a vertex moves in this substep
+    float reach = 0;                    // the most that a vertex moves in this substep
     bool in_use = false;
   };
 
@@ -185,7 +185,8 @@ template <class Executor> void ClothSolver<Executor>::add_threads(Cloth &cloth, 
           int vertex = cloth.vertex_count + static_cast<int>(lane);
           float longest = ClothThreadList::no_link, compliance = 1;
           if (const std::size_t thread = first + lane; thread < end) {
-            const auto begin = static_cast<std::size_t>(list.starts[thread]), last = static_cast<std::size_t>(list.starts[thread + 1]) - 1;
+            const auto begin = static_cast<std::size_t>(list.starts[thread]),
+                       last = static_cast<std::size_t>(list.starts[thread + 1]) - 1;
             const std::size_t at = std::min(begin + j, last);
             vertex = list.vertices[at];
             longest = list.greatest_lengths[at];
@@ -282,8 +283,8 @@ template <class Executor> void ClothSolver<Executor>::map(int index, loam_cloth_
   Cloth &cloth = at(index);
   cloth.normals.reserve(static_cast<std::size_t>(cloth.vertex_count));
   executor_.session([&] {
-    executor_.for_each(cloth.vertex_count, ComputeNormals{cloth.positions.data(), cloth.triangles.data(), cloth.starts.data(),
-                                                          cloth.around.data(), cloth.normals.data()});
+    executor_.for_each(cloth.vertex_count, ComputeNormals{cloth.positions.data(), cloth.triangles.data(),
+                                                          cloth.starts.data(), cloth.around.data(), cloth.normals.data()});
   });
   view.memory = Executor::memory_kind;
   view.vertex_count = static_cast<std::uint32_t>(cloth.vertex_count);
@@ -297,7 +298,8 @@ template <class Executor> std::uint64_t ClothSolver<Executor>::bytes() const {
   for (const Cloth &c : cloths_)
     sum += c.positions.bytes() + c.velocities.bytes() + c.normals.bytes() + c.triangles.bytes() + c.starts.bytes() +
            c.around.bytes() + c.membrane.indices.bytes() + c.membrane.fields.bytes() + c.hinges.indices.bytes() +
-           c.hinges.fields.bytes() + c.threads.indices.bytes() + c.threads.fields.bytes() + c.thread_starts.bytes() + c.attachments.bytes() + c.contacts.bytes() + c.contact_counter.bytes();
+           c.hinges.fields.bytes() + c.threads.indices.bytes() + c.threads.fields.bytes() + c.thread_starts.bytes() +
+           c.attachments.bytes() + c.contacts.bytes() + c.contact_counter.bytes();
   return sum;
 }
 
@@ -324,8 +326,8 @@ template <class Executor> void ClothSolver<Executor>::find_contacts(const Subste
     for (int attempt = 0; attempt < 2; ++attempt) {
       executor_.set(cloth.contact_counter.data(), 1, 0);
       executor_.for_each(cloth.vertex_count,
-                         FindContacts{cloth.positions.data(), cloth.velocities.data(), s.colliders, s.collider_count, s.seconds,
-                                      cloth.material.thickness, cloth.reach, cloth.contacts.data(),
+                         FindContacts{cloth.positions.data(), cloth.velocities.data(), s.colliders, s.collider_count,
+                                      s.seconds, cloth.material.thickness, cloth.reach, cloth.contacts.data(),
                                       static_cast<int>(cloth.contacts.capacity()), cloth.contact_counter.data()});
       cloth.contact_count = executor_.read(cloth.contact_counter.data());
       if (static_cast<std::size_t>(cloth.contact_count) <= cloth.contacts.capacity()) break;
@@ -339,17 +341,17 @@ template <class Executor> void ClothSolver<Executor>::prepare(const Substep &s) 
   for_each_cloth([&](Cloth &cloth) {
     Row *velocities = cloth.velocities.data();
     const float h = s.seconds;
-    executor_.for_each(cloth.vertex_count, ApplyForces{velocities, h * s.gravity});
-    executor_.for_each(cloth.attachment_count, PrepareAttachments{cloth.attachments.data(), s.colliders,
-                                                                  cloth.positions.data(), velocities, h});
+    executor_.for_each(cloth.attachment_count,
+                       PrepareAttachments{cloth.attachments.data(), s.colliders, cloth.positions.data(), velocities, h});
     constexpr float air_density = 1.2f;
     const float air = 0.5f * h * air_density / cloth.material.areal_density;
     const ClothWind &wind = cloth.wind;
-    for_each_colour(cloth.membrane, PrepareMembrane{cloth.membrane.view(),
-                                                    cloth.positions.data(),
-                                                    velocities,
-                                                    {wind.velocity, air * wind.drag, air * wind.lift,
-                                                     cloth.material.areal_density}});
+    for_each_colour(cloth.membrane,
+                    PrepareMembrane{cloth.membrane.view(),
+                                    cloth.positions.data(),
+                                    velocities,
+                                    {wind.velocity, air * wind.drag, air * wind.lift, cloth.material.areal_density}});
+    executor_.for_each(cloth.vertex_count, ApplyForces{velocities, h * s.gravity});
     for_each_colour(cloth.hinges, PrepareHinges{cloth.hinges.view(), cloth.positions.data()});
     for_each_colour(cloth.threads, PrepareThreads{cloth.thread_view(), cloth.positions.data()});
   });
@@ -378,12 +380,11 @@ template <class Executor> void ClothSolver<Executor>::finish(const Substep &s, i
     Row *velocities = cloth.velocities.data();
     const float fastest = cloth.reach / s.seconds;
     executor_.for_each(cloth.vertex_count, LimitSpeed{velocities, fastest, speed_limited});
-    executor_.for_each(cloth.contact_count, SolveContactsWithinLimit{{cloth.contacts.data(), velocities, s.seconds},
-                                                                     fastest,
-                                                                     speed_limited});
     executor_.for_each(cloth.contact_count,
-                       SweepContacts{cloth.contacts.data(), cloth.positions.data(), velocities, s.colliders, s.collider_count,
-                                     s.seconds, 0.05f * cloth.material.thickness});
+                       SolveContactsWithinLimit{{cloth.contacts.data(), velocities, s.seconds}, fastest, speed_limited});
+    executor_.for_each(cloth.contact_count,
+                       SweepContacts{cloth.contacts.data(), cloth.positions.data(), velocities, s.colliders,
+                                     s.collider_count, s.seconds, 0.05f * cloth.material.thickness});
     executor_.for_each(cloth.vertex_count, AdvanceVertices{cloth.positions.data(), velocities, s.seconds});
   });
 }

@@ -89,9 +89,12 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
   }
 }
 
-template <class Executor>
-typename Solver<Executor>::ClothSubstep Solver<Executor>::cloth_substep(const StepInput &input) {
-  return {h_, input.iterations, input.gravity, collider_views_.data(), static_cast<int>(views_.size()),
+template <class Executor> typename Solver<Executor>::ClothSubstep Solver<Executor>::cloth_substep(const StepInput &input) {
+  return {h_,
+          input.iterations,
+          input.gravity,
+          collider_views_.data(),
+          static_cast<int>(views_.size()),
           collider_motion_.greatest()};
 }
 

@@ -4,7 +4,7 @@
 //
 //   B/2 |sum_i q_i x_i|^2 / (A_1 + A_2)
 //
-// which for a cylinder is B/2 curvature^2 area on equilateral triangles in any direction, and along the sides of a grid of right ones. (Written with a 3 in the numerator it
+// which for a cylinder is B/2 curvature^2 area on equilateral triangles in any direction, and nearly so along the sides of a grid of right ones. (Written with a 3 in the numerator it
 // counts every triangle three times.) Being linear it is solved exactly by each visit, in any state of the triangles, and has no angle that could jump. Cloth that is not flat
 // at rest bends about its rest shape: the sum's rest length along the hinge's present normal is taken off.
 #pragma once
@@ -15,8 +15,7 @@ namespace loam {
 
 template <class Real> struct Hinge {
   Real q[4];
-  template <class Team>
-  LOAM_FN static Hinge load(Team &team, const ClothConstraints &constraints, typename Team::Item i) {
+  template <class Team> LOAM_FN static Hinge load(Team &team, const ClothConstraints &constraints, typename Team::Item i) {
     const Vec3<Real> q = team.template vector<HingeField>(constraints, i, HingeField::weight);
     return {{Real(0.0f) - (q.x + (q.y + q.z)), q.x, q.y, q.z}};
   }

@@ -27,9 +27,9 @@ struct Air {
 };
 
 template <class Real> struct Triangle {
-  Vec4<Real> v[3];     // velocities; w is the inverse mass
-  Vec3<Real> e1, e2;   // edges at the end of the substep
-  Real a, b, c, d;     // see above
+  Vec4<Real> v[3];   // velocities; w is the inverse mass
+  Vec3<Real> e1, e2; // edges at the end of the substep
+  Real a, b, c, d;   // see above
 
   // The impulse j times the gradients g1, g2 (and minus their sum) of vertices 1, 2 (and 0).
   LOAM_FN void push(float substep, Vec3<Real> g1, Vec3<Real> g2) {
@@ -58,8 +58,9 @@ template <class Real> LOAM_FN Vec3<Real> direction(Vec3<Real> w, Real size) {
   return select(some, Real(1.0f) / select(some, size, Real(1.0f)), Real(0.0f)) * w;
 }
 
-template <class Team> LOAM_FN Triangle<typename Team::Real> load_triangle(Team &team, const ClothConstraints &constraints,
-                                                                           typename Team::Item i, const Row *velocities) {
+template <class Team>
+LOAM_FN Triangle<typename Team::Real> load_triangle(Team &team, const ClothConstraints &constraints, typename Team::Item i,
+                                                    const Row *velocities) {
   using F = MembraneField;
   return {{team.template row<F>(constraints, i, 0, velocities), team.template row<F>(constraints, i, 1, velocities),
            team.template row<F>(constraints, i, 2, velocities)},
@@ -70,8 +71,9 @@ template <class Team> LOAM_FN Triangle<typename Team::Real> load_triangle(Team &
           team.template field<F>(constraints, i, F::weft_of_first),
           team.template field<F>(constraints, i, F::weft_of_second)};
 }
-template <class Team> LOAM_FN void store_triangle(Team &team, const ClothConstraints &constraints, typename Team::Item i,
-                                                  Row *velocities, const Triangle<typename Team::Real> &t) {
+template <class Team>
+LOAM_FN void store_triangle(Team &team, const ClothConstraints &constraints, typename Team::Item i, Row *velocities,
+                            const Triangle<typename Team::Real> &t) {
   for (int k = 0; k < 3; ++k) team.template set_row<MembraneField>(constraints, i, k, velocities, t.v[k]);
 }
 

@@ -40,7 +40,7 @@ struct ClothThreads {
 };
 
 // A link that is too long already gets no longer, and loses the excess over a few substeps: all at once would be a velocity.
-constexpr float kept_excess = 0.8f;
+constexpr float kept_excess = 0.5f;
 
 struct PrepareThreads {
   ClothThreads threads;
@@ -58,7 +58,8 @@ struct PrepareThreads {
       const Vec3<Real> edge = next - x;
       team.template set_vector<F>(places, link, F::edge, edge);
       const Real longest = team.template field<F>(places, link, F::greatest_length), zero(0.0f);
-      team.template set_field<F>(places, link, F::bound, longest + Real(kept_excess) * maximum(length(edge) - longest, zero));
+      team.template set_field<F>(places, link, F::bound,
+                                 longest + Real(kept_excess) * maximum(length(edge) - longest, zero));
       team.template set_field<F>(places, link, F::tension, Real(0.0f));
       x = next;
     }
@@ -84,7 +85,8 @@ struct SolveThreads {
     // Elimination, from the first link to the last.
     Vec4<Real> v = team.template row<F>(places, team.place(threads.starts, i, 0), 0, velocities);
     Vec3<Real> n_before = {zero, zero, zero};
-    Real pivot_before = zero, impulse_before = zero; // 1 / pivot of the row before, 0 if it has no part; its right side over its pivot
+    Real pivot_before = zero,
+         impulse_before = zero; // 1 / pivot of the row before, 0 if it has no part; its right side over its pivot
     auto some = zero > zero;
     for (int j = 0; j < links; ++j) {
       const auto link = team.place(threads.starts, i, j);

@@ -9,11 +9,11 @@ namespace loam {
 // A vertex held at a point of space or of a collider.
 struct Attachment {
   int vertex;
-  int collider;        // index among those of the step; -1: space
-  Vec3<float> point;   // in the collider's frame, or in space, m
-  float stiffness;     // N/m; 0: rigid, the vertex then has an inverse mass of 0 and goes where its point goes
-  Vec3<float> offset;  // from the point's place at the end of the substep to the vertex at its start, m
-  Vec3<float> force;   // N, of this substep; springs only
+  int collider;       // index among those of the step; -1: space
+  Vec3<float> point;  // in the collider's frame, or in space, m
+  float stiffness;    // N/m; 0: rigid, the vertex then has an inverse mass of 0 and goes where its point goes
+  Vec3<float> offset; // from the point's place at the end of the substep to the vertex at its start, m
+  Vec3<float> force;  // N, of this substep; springs only
 };
 
 LOAM_FN void add_velocity(Row &row, Vec3<float> change) {
