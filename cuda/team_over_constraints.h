@@ -28,8 +28,8 @@ struct TeamOverConstraints {
     rows[index<Field>(c, i, k)] = {v.x, v.y, v.z, v.w};
   }
   template <class Field> LOAM_FN float field(const ClothConstraints &c, int i, int f) const { return value<Field>(c, i, f); }
-  template <class Field> LOAM_FN void set_field(const ClothConstraints &c, int i, int f, float value) const {
-    value<Field>(c, i, f) = value;
+  template <class Field> LOAM_FN void set_field(const ClothConstraints &c, int i, int f, float number) const {
+    value<Field>(c, i, f) = number;
   }
   template <class Field> LOAM_FN Vec3<float> vector(const ClothConstraints &c, int i, int f) const {
     return {field<Field>(c, i, f), field<Field>(c, i, f + 1), field<Field>(c, i, f + 2)};
