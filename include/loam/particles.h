@@ -88,6 +88,19 @@ LOAM_API loam_status loam_particles_def_default(loam_particles_def *def, size_t 
 /* Adds particles; *first_id (may be null) receives the id of the first, the others follow. Errors as for fill. */
 LOAM_API loam_status loam_particles_add(loam_world *world, const loam_particles_def *def, uint32_t *first_id);
 
+/* Takes `count` particles out of the world, by their ids. Ids of removed particles do not come back. Costs a look at all ids and a move of as many
+ * particles as go.
+ * Errors: INVALID_ARGUMENT, also for an id that is named twice and for more ids than there are particles; INVALID_HANDLE naming the first id that no
+ * particle has; IN_USE while buffers are mapped; OUT_OF_MEMORY. Nothing is removed on an error. */
+LOAM_API loam_status loam_particles_remove(loam_world *world, const uint32_t *ids, uint64_t count);
+
+/* Puts `count` particles elsewhere, by their ids. `positions` (x, y, z each; metres, finite, and within 1e6 r of the origin) and `velocities` (x, y,
+ * z; m/s) have `count` elements in the order of the ids; one of them may be null: it stays. Strain, volume and mass stay. This also leads pinned
+ * particles: they keep the velocity that they are given until the next call.
+ * Errors: as for remove. Nothing moves on an error. */
+LOAM_API loam_status loam_particles_move(loam_world *world, const uint32_t *ids, uint64_t count, const float *positions,
+                                         const float *velocities);
+
 /* The number of particles. */
 LOAM_API loam_status loam_particles_count(const loam_world *world, uint64_t *count);
 
@@ -101,7 +114,7 @@ typedef struct loam_particle_view {
   uint32_t struct_size; /* set by the caller to sizeof(loam_particle_view) */
   uint32_t memory;      /* LOAM_MEMORY_*: which processor the pointers are good for */
   uint64_t count;
-  const uint32_t *ids;       /* stable: 0, 1, 2 ... in the order of creation */
+  const uint32_t *ids;       /* stable: 0, 1, 2 ... in the order of creation; those of removed particles do not come back */
   const float *positions;    /* stride of 4 floats: x, y, z, and the particle's present volume in m^3 */
   const float *velocities;   /* stride of 4 floats: x, y, z, and the inverse mass in 1/kg (0: pinned) */
   const uint32_t *materials; /* the lower 32 bits of the loam_material_id */

@@ -45,6 +45,21 @@ loam_status loam_particles_add(loam_world *world, const loam_particles_def *def,
   });
 }
 
+loam_status loam_particles_remove(loam_world *world, const uint32_t *ids, uint64_t count) {
+  return guarded(world, [&] {
+    check_pointer(world, "world");
+    world->remove_particles(ids, count);
+  });
+}
+
+loam_status loam_particles_move(loam_world *world, const uint32_t *ids, uint64_t count, const float *positions,
+                                const float *velocities) {
+  return guarded(world, [&] {
+    check_pointer(world, "world");
+    world->move_particles(ids, count, positions, velocities);
+  });
+}
+
 loam_status loam_particles_count(const loam_world *world, uint64_t *count) {
   return guarded(world, [&] {
     check_pointer(world, "world");

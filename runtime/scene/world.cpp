@@ -310,14 +310,17 @@ void loam_world::check_room(std::uint64_t count) const {
     throw Error(LOAM_ERROR_CAPACITY, format("%llu particles would be needed; particle_capacity is %llu",
                                             static_cast<unsigned long long>(want < count ? count : want),
                                             static_cast<unsigned long long>(def_.particle_capacity)));
+  if (next_id_ + count > 0xffffffffu)
+    throw Error(LOAM_ERROR_CAPACITY,
+                format("%llu particles were made in this world; there are ids for 4294967295, and they do not come back",
+                       static_cast<unsigned long long>(next_id_)));
 }
 
 void loam_world::add_particles(loam_material_id material, const char *argument, NewParticles particles, bool pinned) {
   Material &m = materials_.at(material, argument);
-  const std::uint64_t have = backend_->particle_count();
   check_room(particles.count);
   particles.material = static_cast<std::uint32_t>(material & 0xffffffffu);
-  particles.first_id = static_cast<std::uint32_t>(have);
+  particles.first_id = static_cast<std::uint32_t>(next_id_);
   particles.inverse_mass = pinned ? 0.0f : 1.0f / (m.def.density * particles.volume);
   if (!pinned && !(particles.inverse_mass > 0.0f && particles.inverse_mass <= 1e30f))
     throw Error(LOAM_ERROR_INVALID_ARGUMENT,
@@ -334,6 +337,7 @@ void loam_world::add_particles(loam_material_id material, const char *argument, 
     if (first) send_materials(); // as they were: there is room
     throw;
   }
+  next_id_ += particles.count;
 }
 
 std::uint64_t loam_world::fill(const loam_fill_def &def) {
@@ -349,6 +353,21 @@ std::uint64_t loam_world::fill(const loam_fill_def &def) {
   return particles.count;
 }
 
+void loam_world::check_motion(std::uint64_t count, const float *positions, const float *velocities) const {
+  const double r = static_cast<double>(def_.kernel_radius);
+  for (std::uint64_t i = 0; i < 3 * count; ++i) {
+    const auto part = static_cast<unsigned long long>(i / 3);
+    const char axis = "xyz"[i % 3];
+    if (positions != nullptr && !(std::abs(static_cast<double>(positions[i])) <= 1e6 * r))
+      throw Error(LOAM_ERROR_INVALID_ARGUMENT,
+                  format("positions[%llu].%c is %g; it must be finite and within 1e6 kernel radii (%g m) of the origin",
+                         part, axis, static_cast<double>(positions[i]), 1e6 * r));
+    if (velocities != nullptr && !(std::abs(static_cast<double>(velocities[i])) <= 1e9))
+      throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("velocities[%llu].%c is %g; it must be finite and at most 1e9", part,
+                                                      axis, static_cast<double>(velocities[i])));
+  }
+}
+
 std::uint32_t loam_world::add(const loam_particles_def &def) {
   check_unmapped();
   (void)materials_.at(def.material, "material");
@@ -358,25 +377,48 @@ std::uint32_t loam_world::add(const loam_particles_def &def) {
   const double r = static_cast<double>(def_.kernel_radius);
   if (def.count > 0) check_pointer(def.positions, "positions");
   if (def.volume != 0.0f) check_range("volume", static_cast<double>(def.volume), 1e-24, 1e18);
-  for (std::uint64_t i = 0; i < 3 * def.count; ++i) {
-    const auto part = static_cast<unsigned long long>(i / 3);
-    const char axis = "xyz"[i % 3];
-    if (!(std::abs(static_cast<double>(def.positions[i])) <= 1e6 * r))
-      throw Error(LOAM_ERROR_INVALID_ARGUMENT,
-                  format("positions[%llu].%c is %g; it must be finite and within 1e6 kernel radii (%g m) of the origin",
-                         part, axis, static_cast<double>(def.positions[i]), 1e6 * r));
-    if (def.velocities != nullptr && !(std::abs(static_cast<double>(def.velocities[i])) <= 1e9))
-      throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("velocities[%llu].%c is %g; it must be finite and at most 1e9", part,
-                                                      axis, static_cast<double>(def.velocities[i])));
-  }
+  check_motion(def.count, def.positions, def.velocities);
   NewParticles particles = {};
   particles.volume = def.volume != 0.0f ? def.volume : static_cast<float>(r * r * r);
   particles.count = def.count;
   particles.positions = def.positions;
   particles.velocities = def.velocities;
-  const auto first = static_cast<std::uint32_t>(backend_->particle_count());
+  const auto first = static_cast<std::uint32_t>(next_id_);
   add_particles(def.material, "material", particles, def.pinned == 1);
   return first;
+}
+
+void loam_world::remove_particles(const std::uint32_t *ids, std::uint64_t count) {
+  check_unmapped();
+  if (count > 0) check_pointer(ids, "ids");
+  check_named(count);
+  const std::vector<std::uint64_t> removed = backend_->remove_particles(ids, count);
+  bool changed = false;
+  for (std::size_t i = 0; i < removed.size(); ++i)
+    if (Material *m = removed[i] > 0 ? materials_.at_index(i) : nullptr; m != nullptr) {
+      m->particles -= removed[i];
+      changed = changed || m->particles == 0;
+    }
+  if (changed) send_materials(); // fewer in use: needs no memory
+}
+
+void loam_world::move_particles(const std::uint32_t *ids, std::uint64_t count, const float *positions,
+                                const float *velocities) {
+  check_unmapped();
+  if (count > 0) check_pointer(ids, "ids");
+  if (count > 0 && positions == nullptr && velocities == nullptr)
+    throw Error(LOAM_ERROR_INVALID_ARGUMENT, "positions and velocities are null; give one of them or both");
+  check_named(count);
+  check_motion(count, positions, velocities);
+  backend_->set_motion({ids, positions, velocities, count});
+}
+
+// Before the arrays are read: each particle may be named once.
+void loam_world::check_named(std::uint64_t count) const {
+  if (count > backend_->particle_count())
+    throw Error(LOAM_ERROR_INVALID_ARGUMENT,
+                format("count is %llu; the world has %llu particles", static_cast<unsigned long long>(count),
+                       static_cast<unsigned long long>(backend_->particle_count())));
 }
 
 void loam_world::map(loam_particle_view &view) {

@@ -48,6 +48,8 @@ public:
 
   std::uint64_t fill(const loam_fill_def &def);
   std::uint32_t add(const loam_particles_def &def);
+  void remove_particles(const std::uint32_t *ids, std::uint64_t count);
+  void move_particles(const std::uint32_t *ids, std::uint64_t count, const float *positions, const float *velocities);
   void map(loam_particle_view &view);
   void unmap();
 
@@ -68,6 +70,8 @@ private:
     loam_collider_report report{};
   };
   void check_unmapped() const;
+  void check_motion(std::uint64_t count, const float *positions, const float *velocities) const;
+  void check_named(std::uint64_t count) const;
   void check_room(std::uint64_t count) const; // for so many more particles
   void send_materials();
   void limit_stiffness(); // to what a substep can carry
@@ -84,5 +88,6 @@ private:
   std::vector<int> index_of_slot_; // while there is cloth: where each of colliders_ is among those of the step
   std::unique_ptr<loam::Backend> backend_;
   loam::StepInput input_{};
+  std::uint64_t next_id_ = 0; // of particles; those of removed ones do not come back
   bool mapped_ = false;
 };

@@ -71,6 +71,13 @@ struct NewParticles {
   std::uint64_t count;
 };
 
+// New positions, velocities or both of particles by their ids.
+struct ParticleMotion {
+  const std::uint32_t *ids;
+  const float *positions, *velocities; // 3 each, or null: they stay
+  std::uint64_t count;
+};
+
 class Backend {
 public:
   virtual ~Backend() = default;
@@ -78,6 +85,9 @@ public:
   virtual int add_shape(const ColliderShape &shape) = 0;
   virtual void remove_shape(int shape) = 0;
   virtual void add_particles(const NewParticles &particles) = 0;
+  // Both throw Error and change nothing for an id that no particle has, or that is named twice. Answers how many of each material went.
+  virtual std::vector<std::uint64_t> remove_particles(const std::uint32_t *ids, std::uint64_t count) = 0;
+  virtual void set_motion(const ParticleMotion &motion) = 0;
   virtual std::uint64_t particle_count() const = 0;
   // Throws Error; then the particles stand at the end of the last whole substep, and `statistics.substeps_done` says of which.
   virtual void step(const StepInput &input) = 0;

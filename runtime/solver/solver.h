@@ -8,6 +8,7 @@
 #include "kernels/contact/find_contacts.h"
 #include "kernels/contact/solve_contacts.h"
 #include "kernels/contact/sweep_contacts.h"
+#include "kernels/integration/edit_particles.h"
 #include "kernels/integration/integrate.h"
 #include "kernels/integration/measures.h"
 #include "kernels/neighbours/sort_stages.h"
@@ -29,6 +30,8 @@ public:
   int add_shape(const ColliderShape &shape) override;
   void remove_shape(int shape) override;
   void add_particles(const NewParticles &particles) override;
+  std::vector<std::uint64_t> remove_particles(const std::uint32_t *ids, std::uint64_t count) override;
+  void set_motion(const ParticleMotion &motion) override;
   std::uint64_t particle_count() const override { return static_cast<std::uint64_t>(count_); }
   void step(const StepInput &input) override;
   void map(loam_particle_view &view) override;
@@ -69,6 +72,8 @@ private:
     array.reserve(std::max<std::size_t>(values.size(), 1));
     executor_.upload(array.data(), values.data(), values.size());
   }
+
+  std::vector<std::uint32_t> places_of(const std::uint32_t *ids, std::size_t count);
 
   // The parts of a substep, in substep.h.
   void substep(const StepInput &input, std::uint32_t index);
@@ -355,5 +360,6 @@ template <class Executor> std::vector<MemoryUse> Solver<Executor>::memory() cons
 
 } // namespace loam
 
+#include "solver/edit.h"
 #include "solver/step.h"
 #include "solver/substep.h"

@@ -29,9 +29,9 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
   }
 
   iterate(input);
-  if (last) measure(input.gravity);
+  if (last && count_ > 0) measure(input.gravity);
 
-  if (schedule_.velocity_smoothing >= 0) {
+  if (schedule_.velocity_smoothing >= 0 && count_ > 0) {
     // A share of 1 would be a step to the neighbours' mean; more overshoots.
     const float coefficient = std::min(1.0f, settings_.velocity_smoothing * h_);
     Row *smoothed = other_.velocities.data();
@@ -57,7 +57,7 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
   // Strain and position with the same velocity.
   for (int m = 0; m < static_cast<int>(materials_.size()); ++m) {
     const int stage = schedule_.strain[static_cast<std::size_t>(m)];
-    if (stage < 0) continue;
+    if (stage < 0 || count_ == 0) continue;
     with_law(m, [&](const auto &law, StrainLimit limit) {
       using Law = std::remove_cvref_t<decltype(law)>;
       const auto update = [&](auto non_affine) {
@@ -101,12 +101,15 @@ template <class Executor> typename Solver<Executor>::ClothSubstep Solver<Executo
 // The nonlinear iterations: inelastic constraints, position correction, cloth, contacts.
 template <class Executor> void Solver<Executor>::iterate(const StepInput &input) {
   for (std::uint32_t i = 0; i < input.iterations; ++i) {
-    if (settings_.jacobi) {
-      solve_at_once();
-    } else {
-      solve_in_turn();
+    // Without particles, lists and visits are those of a substep that had some.
+    if (count_ > 0) {
+      if (settings_.jacobi) {
+        solve_at_once();
+      } else {
+        solve_in_turn();
+      }
+      if (schedule_.position_correction >= 0) correct_positions();
     }
-    if (schedule_.position_correction >= 0) correct_positions();
     if (!cloth_.empty()) {
       cloth_.solve(cloth_substep(input));
       lap(schedule_.solve_cloth, cloth_.constraint_count());

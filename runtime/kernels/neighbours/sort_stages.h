@@ -22,6 +22,20 @@ struct ParticleArrays {
   float *free_distances; // see kernels/contact/free_distance.h; no part of the state
 };
 
+LOAM_FN void move_particle(const ParticleArrays &from, long j, const ParticleArrays &to, long i) {
+  to.positions[i] = from.positions[j];
+  to.velocities[i] = from.velocities[j];
+  for (int k = 0; k < 6; ++k) to.strains[6 * i + k] = from.strains[6 * j + k];
+  if (to.histories != nullptr) to.histories[i] = from.histories[j];
+  if (to.drifts != nullptr)
+    for (int k = 0; k < 3; ++k) to.drifts[3 * i + k] = from.drifts[3 * j + k];
+  to.log_volumes[i] = from.log_volumes[j];
+  to.rest_volumes[i] = from.rest_volumes[j];
+  to.ids[i] = from.ids[j];
+  to.materials[i] = from.materials[j];
+  if (to.free_distances != nullptr) to.free_distances[i] = from.free_distances[j];
+}
+
 struct AssignCells {
   CellGrid grid;
   const Row *positions;
@@ -40,20 +54,10 @@ struct MoveParticles {
   LOAM_FN void operator()(int i) const {
     const std::uint32_t j = order[i];
     const Row position = from.positions[j];
-    to.positions[i] = position;
     x[i] = position.x;
     y[i] = position.y;
     z[i] = position.z;
-    to.velocities[i] = from.velocities[j];
-    for (int k = 0; k < 6; ++k) to.strains[6 * static_cast<long>(i) + k] = from.strains[6 * static_cast<long>(j) + k];
-    if (to.histories != nullptr) to.histories[i] = from.histories[j];
-    if (to.drifts != nullptr)
-      for (int k = 0; k < 3; ++k) to.drifts[3 * static_cast<long>(i) + k] = from.drifts[3 * static_cast<long>(j) + k];
-    to.log_volumes[i] = from.log_volumes[j];
-    to.rest_volumes[i] = from.rest_volumes[j];
-    to.ids[i] = from.ids[j];
-    to.materials[i] = from.materials[j];
-    if (to.free_distances != nullptr) to.free_distances[i] = from.free_distances[j];
+    move_particle(from, static_cast<long>(j), to, i);
   }
 };
 
