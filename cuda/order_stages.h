@@ -51,9 +51,22 @@ struct AssignVisits {
     const std::uint64_t pass = material * static_cast<std::uint64_t>(n * n * n) + static_cast<std::uint64_t>(colour);
     const int count = table.neighbour_counts[i];
     const int rank = count < greatest_count ? greatest_count - count : 0;
-    keys[i] = (((pass << block_bits) | static_cast<std::uint64_t>(block)) << count_bits) | static_cast<std::uint64_t>(rank);
     particles[i] = static_cast<std::uint32_t>(i);
+    if (table.active_cells != nullptr && table.active_cells[cell] == 0) { // not visited: behind all others
+      keys[i] = ~static_cast<std::uint64_t>(0);
+      return;
+    }
+    keys[i] = (((pass << block_bits) | static_cast<std::uint64_t>(block)) << count_bits) | static_cast<std::uint64_t>(rank);
   }
+};
+
+struct CountVisited {
+  using Value = long long;
+  const std::uint32_t *keys;
+  const std::uint8_t *active_cells;
+  LOAM_FN static Value identity() { return 0; }
+  LOAM_FN Value operator()(int i) const { return active_cells[keys[i]]; }
+  LOAM_FN static Value combine(Value a, Value b) { return a + b; }
 };
 
 // What the stages over sorted visits have in common.

@@ -69,7 +69,8 @@ public:
   void find_neighbours(const CellTable &table, const CandidateTest &test, int *neighbour_counts, int *close_counts,
                        Check &&check, Schedule &schedule) {
     const auto particles = static_cast<std::uint64_t>(table.particle_count);
-    machine_.search(CountNeighbours{test, neighbour_counts, close_counts}, candidates(table), table.particle_count);
+    machine_.search(CountNeighbours{test, neighbour_counts, close_counts, table.keys, table.active_cells}, candidates(table),
+                    table.particle_count);
     const auto pairs = static_cast<std::uint64_t>(reduce(table.particle_count, SumCounts{neighbour_counts}));
     check(pairs);
     lap(schedule, schedule.search, pairs);

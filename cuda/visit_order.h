@@ -67,15 +67,19 @@ public:
     const Colouring &colouring = table.colouring;
     const int w = colouring.block_width, colours = colouring.colours();
     const int block_bits = bits_for(table.grid.cell_count() / (w * w * w));
-    const int key_bits = AssignVisits::count_bits + block_bits + bits_for(colours * table.material_count);
+    // With one bit to spare for particles that are not visited.
+    const int key_bits = AssignVisits::count_bits + block_bits + bits_for(colours * table.material_count) + 1;
 
     const SortedVisits sorted = {keys_.data(), particles_.data(), table.neighbour_counts, block_bits};
     machine_.for_each(count, AssignVisits{table, block_bits, keys_.data(), particles_.data()});
     machine_.sort(keys_.data(), particles_.data(), count, key_bits);
-    machine_.for_each(count, CountVisits{sorted, sums_.data()});
-    machine_.exclusive_sum(sums_.data(), count);
-    machine_.for_each(count, PlaceVisits{sorted, sums_.data(), table.close_counts, count, visits_.data(),
-                                         entry_starts_.data(), entry_passes_.data(), pass_rows_.data()});
+    const int visits = table.active_cells == nullptr
+                           ? count
+                           : static_cast<int>(machine_.reduce(count, CountVisited{table.keys, table.active_cells}));
+    machine_.for_each(visits, CountVisits{sorted, sums_.data()});
+    machine_.exclusive_sum(sums_.data(), visits);
+    machine_.for_each(visits, PlaceVisits{sorted, sums_.data(), table.close_counts, visits, visits_.data(),
+                                          entry_starts_.data(), entry_passes_.data(), pass_rows_.data()});
     const PassRow total = read_passes(colours, table.material_count);
     visit_count_ = total.first_visit;
 

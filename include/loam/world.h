@@ -109,6 +109,13 @@ typedef struct loam_world_def {
    * modulus, and yields with the matter; it is independent of the substep and vanishes as r becomes small. For all laws but DRUCKER_PRAGER, with
    * PROJECTED_TENSOR. 0 to 100; default 10. */
   float zero_energy_stiffness;
+
+  /* Sleep: particles that were slower than sleep_speed (m/s) for sleep_delay (s) are held in place and cost next to nothing until something reaches
+   * them: a neighbour twice as fast, a moving collider, new gravity, a changed material, or loam_world_wake. The error is bounded by the speed: what would creep slower is stopped. A speed of 0.1 r to 0.5 r a second stops what no one sees; slower, loose grains at a pile's foot
+   * stay awake for long; over about g sleep_delay / 2 it would stop what hangs in the air at the top of its flight.
+   * sleep_speed: 0 to 1e3; default 0: nothing sleeps, and sleep takes neither time nor memory. sleep_delay: 0.01 to 1e3; default 0.5. */
+  float sleep_speed;
+  float sleep_delay;
 } loam_world_def;
 
 /* Writes the defaults above. `size` is sizeof(loam_world_def); at most that many bytes are written.
@@ -132,6 +139,9 @@ LOAM_API loam_status loam_world_set_gravity(loam_world *world, const float gravi
 
 /* Substeps and iterations from the next step on; ranges as in the definition. */
 LOAM_API loam_status loam_world_set_accuracy(loam_world *world, uint32_t substeps, uint32_t iterations);
+
+/* Wakes all that sleeps, at the start of the next step; see loam_world_def.sleep_speed. */
+LOAM_API loam_status loam_world_wake(loam_world *world);
 
 /* The backend that the world really uses: LOAM_BACKEND_CPU or LOAM_BACKEND_CUDA; and, on the CPU, the instruction set. Either
  * pointer may be null. */
@@ -183,6 +193,8 @@ typedef struct loam_statistics {
   /* Times in the step that the end of a substep took a particle's strain by an eigen-decomposition: elastic strains beyond about a fifth leave the
    * range of the polynomials that serve all others. It costs a few times as much, and no accuracy. */
   uint64_t strain_decomposed;
+
+  uint64_t sleeping; /* particles that sleep now, see loam_world_def.sleep_speed */
 } loam_statistics;
 
 /* Errors: INVALID_ARGUMENT for null or an unknown struct_size. */

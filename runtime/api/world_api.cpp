@@ -42,6 +42,13 @@ loam_status loam_world_set_accuracy(loam_world *world, uint32_t substeps, uint32
   });
 }
 
+loam_status loam_world_wake(loam_world *world) {
+  return guarded(world, [&] {
+    check_pointer(world, "world");
+    world->wake();
+  });
+}
+
 loam_status loam_world_get_backend(const loam_world *world, uint32_t *backend, uint32_t *instruction_set) {
   return guarded(world, [&] {
     check_pointer(world, "world");

@@ -271,17 +271,15 @@ void VisitOrder::begin_lists() {
   largest_lists_ = 0;
 }
 
-bool VisitOrder::lists_are_complete() const {
-  return step_count_ <= step_capacity() && largest_lists_ + width_ <= found_lists_size_;
-}
+bool VisitOrder::lists_are_complete() const { return step_count_ <= step_capacity() && largest_lists_ <= found_lists_size_; }
 
 void VisitOrder::make_room() {
   const auto W = static_cast<std::size_t>(width_), steps = static_cast<std::size_t>(step_count_);
   // Prefetches may run past the end, which is harmless; loads do not.
   grow(gradients_, steps * 3 * W);
   grow(indices_, steps * W);
-  if (largest_lists_ + width_ > found_lists_size_) {
-    const std::int64_t size = (largest_lists_ + largest_lists_ / 8 + width_ + 15) / 16 * 16;
+  if (largest_lists_ > found_lists_size_) {
+    const std::int64_t size = (largest_lists_ + largest_lists_ / 8 + 15) / 16 * 16;
     found_lists_.reserve(static_cast<std::size_t>(size) * threads_);
     found_lists_size_ = size;
   }

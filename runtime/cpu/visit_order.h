@@ -97,7 +97,7 @@ private:
   int batch_count_ = 0;
   int largest_group_ = 0;                                   // particles
   std::atomic<std::int64_t> step_count_{0}, pair_count_{0}; // of all lists so far
-  std::atomic<std::int64_t> largest_lists_{0};              // of a group, in entries
+  std::atomic<std::int64_t> largest_lists_{0};              // room for those of a group, in entries
   std::vector<Pass> passes_;
   std::vector<Part> parts_; // of each pass: one a thread, and an end
   std::vector<int> groups_of_part_;
@@ -116,7 +116,7 @@ private:
   std::int64_t found_lists_size_ = 0;
 };
 
-// Calls f(first, last) for each run of particles in a block of cells: its columns along z.
+// Calls f(first, last) for each run of particles that are visited in a block of cells: its columns along z.
 template <class F> void for_each_run(const CellTable &table, int block, F &&f) {
   const int w = table.colouring.block_width;
   const int ny = table.grid.size[1], nz = table.grid.size[2], by = ny / w, bz = nz / w;
@@ -124,7 +124,12 @@ template <class F> void for_each_run(const CellTable &table, int block, F &&f) {
   for (int dx = 0; dx < w; ++dx)
     for (int dy = 0; dy < w; ++dy) {
       const int cell = ((x + dx) * ny + y + dy) * nz + z;
-      if (table.starts[cell] != table.starts[cell + w]) f(table.starts[cell], table.starts[cell + w]);
+      if (table.active_cells == nullptr) {
+        if (table.starts[cell] != table.starts[cell + w]) f(table.starts[cell], table.starts[cell + w]);
+      } else {
+        for (int c = cell; c < cell + w; ++c)
+          if (table.active_cells[c] != 0) f(table.starts[c], table.starts[c + 1]);
+      }
     }
 }
 
@@ -136,14 +141,19 @@ void VisitOrder::make_lists(int group, unsigned thread, Find &&find, Interleave 
   const int count = list_particles(group, particles);
   find(particles, count, lists);
   pair_count_.fetch_add(lists.needed, std::memory_order_relaxed);
-  std::int64_t most = largest_lists_.load(std::memory_order_relaxed);
-  while (lists.needed > most && !largest_lists_.compare_exchange_weak(most, lists.needed, std::memory_order_relaxed)) {
-  }
 
   // Where a group's lists lie depends on which thread came first; what is in them does not.
   const std::int64_t steps = fill_group(group, particles);
   const std::int64_t first = step_count_.fetch_add(steps, std::memory_order_relaxed);
-  if (lists.used != lists.needed || first + steps > step_capacity()) return;
+  // Interleaving reads as far past each list as the longest one beside it reaches.
+  int longest = 0;
+  for (int batch = group_begin(group); batch < group_begin(group + 1); ++batch)
+    longest = std::max(longest, step_counts_[static_cast<std::size_t>(batch)]);
+  const std::int64_t room = lists.needed + longest + width_;
+  std::int64_t most = largest_lists_.load(std::memory_order_relaxed);
+  while (room > most && !largest_lists_.compare_exchange_weak(most, room, std::memory_order_relaxed)) {
+  }
+  if (room > lists.capacity || first + steps > step_capacity()) return;
   int offset = static_cast<int>(first);
   for (int batch = group_begin(group); batch < group_begin(group + 1); ++batch) {
     offsets_[static_cast<std::size_t>(batch)] = offset;

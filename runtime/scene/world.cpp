@@ -46,6 +46,7 @@ loam_world_def default_world() {
   def.particle_capacity = 65536;
   def.multiplier = LOAM_MULTIPLIER_PROJECTED_TENSOR;
   def.zero_energy_stiffness = 10;
+  def.sleep_delay = 0.5f;
   return def;
 }
 
@@ -66,6 +67,8 @@ void check_world_def(const loam_world_def &def) {
   check_hooks(def);
   check_choice("multiplier", def.multiplier, LOAM_MULTIPLIER_SCALAR);
   check_range("zero_energy_stiffness", static_cast<double>(def.zero_energy_stiffness), 0, 100);
+  check_range("sleep_speed", static_cast<double>(def.sleep_speed), 0, 1e3);
+  check_range("sleep_delay", static_cast<double>(def.sleep_delay), static_cast<double>(0.01f), 1e3);
 }
 
 } // namespace loam
@@ -81,16 +84,18 @@ loam_world::loam_world(const loam_world_def &def)
     throw Error(LOAM_ERROR_INVALID_ARGUMENT,
                 format("instruction_set is %s (%u), which this machine does not have",
                        instruction_set_name(execution_.instruction_set), execution_.instruction_set));
-  const SolverSettings settings = {def.kernel_radius,
-                                   def.gradient_cutoff,
-                                   def.minimum_distance,
-                                   def.velocity_smoothing,
-                                   def.solver == LOAM_SOLVER_JACOBI,
-                                   def.plasticity == LOAM_PLASTICITY_SEMI_IMPLICIT,
-                                   def.multiplier == LOAM_MULTIPLIER_PROJECTED_TENSOR,
-                                   def.zero_energy_stiffness,
-                                   def.particle_capacity,
-                                   def.pair_capacity};
+  SolverSettings settings = {def.kernel_radius,
+                             def.gradient_cutoff,
+                             def.minimum_distance,
+                             def.velocity_smoothing,
+                             def.solver == LOAM_SOLVER_JACOBI,
+                             def.plasticity == LOAM_PLASTICITY_SEMI_IMPLICIT,
+                             def.multiplier == LOAM_MULTIPLIER_PROJECTED_TENSOR,
+                             def.zero_energy_stiffness,
+                             def.particle_capacity,
+                             def.pair_capacity};
+  settings.sleep_speed = def.sleep_speed;
+  settings.sleep_delay = def.sleep_delay;
   if (def.backend == LOAM_BACKEND_CUDA || (def.backend == LOAM_BACKEND_AUTO && cuda_available())) {
     backend_ = make_cuda_backend(settings, execution_);
     backend_kind_ = LOAM_BACKEND_CUDA;
@@ -131,6 +136,7 @@ void loam_world::step(float seconds) {
   cloths_.use_colliders(backend_->cloth(), index_of_slot_);
   try {
     backend_->step(input_);
+    input_.wake = false;
   } catch (const Error &) {
     // Colliders stop with the particles, at the end of the last whole substep.
     const double share = static_cast<double>(backend_->statistics().substeps_done) / input_.substeps;
@@ -162,6 +168,7 @@ void loam_world::limit_stiffness() {
 void loam_world::set_gravity(const float gravity[3]) {
   check_vector("gravity", gravity, 1e6);
   input_.gravity = {gravity[0], gravity[1], gravity[2]};
+  input_.wake = true;
 }
 
 void loam_world::set_accuracy(std::uint32_t substeps, std::uint32_t iterations) {
@@ -207,6 +214,7 @@ void loam_world::set_meeting(loam_material_id a, loam_material_id b, std::uint32
   if (meeting == LOAM_MEETING_CONTACT) contacts_.push_back({low, high, friction});
   try {
     send_materials();
+    input_.wake = true;
   } catch (...) {
     contacts_ = before;
     throw;
@@ -242,6 +250,7 @@ void loam_world::set_material(loam_material_id id, const loam_material_def &def)
   m.def = def;
   try {
     send_materials();
+    input_.wake = true;
   } catch (...) {
     m = before;
     throw;
@@ -273,6 +282,7 @@ loam_collider_id loam_world::create_collider(const loam_collider_def &def) {
   (void)colliders_.next_id(); // room for one more
   collider.shape = backend_->add_shape(make_collider_shape(def, collider.report));
   collider.report.struct_size = sizeof collider.report;
+  input_.wake = true;
   return colliders_.add(collider);
 }
 
@@ -280,12 +290,15 @@ void loam_world::destroy_collider(loam_collider_id id) {
   cloths_.check_unattached(static_cast<int>(colliders_.index_of(id, "collider")));
   backend_->remove_shape(colliders_.at(id, "collider").shape);
   colliders_.remove(id, "collider");
+  input_.wake = true;
 }
 
 void loam_world::pose_collider(loam_collider_id id, const float position[3], const float rotation[4], bool at_once) {
   Collider &collider = colliders_.at(id, "collider");
   collider.target = make_pose(position, rotation);
-  if (at_once) collider.pose = collider.target;
+  if (!at_once) return;
+  collider.pose = collider.target;
+  input_.wake = true;
 }
 
 loam_collider_report loam_world::collider_report(loam_collider_id id) const { return colliders_.at(id, "collider").report; }
@@ -393,6 +406,7 @@ void loam_world::remove_particles(const std::uint32_t *ids, std::uint64_t count)
   if (count > 0) check_pointer(ids, "ids");
   check_named(count);
   const std::vector<std::uint64_t> removed = backend_->remove_particles(ids, count);
+  input_.wake = true; // who lay on them falls
   bool changed = false;
   for (std::size_t i = 0; i < removed.size(); ++i)
     if (Material *m = removed[i] > 0 ? materials_.at_index(i) : nullptr; m != nullptr) {
@@ -411,6 +425,7 @@ void loam_world::move_particles(const std::uint32_t *ids, std::uint64_t count, c
   check_named(count);
   check_motion(count, positions, velocities);
   backend_->set_motion({ids, positions, velocities, count});
+  input_.wake = true;
 }
 
 // Before the arrays are read: each particle may be named once.

@@ -26,6 +26,7 @@ public:
 
   void step(float seconds);
   void set_gravity(const float gravity[3]);
+  void wake() { input_.wake = true; }
   void set_accuracy(std::uint32_t substeps, std::uint32_t iterations);
   std::uint32_t backend_kind() const { return backend_kind_; }
   std::uint32_t instruction_set() const { return execution_.instruction_set; }

@@ -33,6 +33,7 @@ void Schedule::compile(const SceneContents &contents) {
     strain.push_back(material.in_use ? add("strain " + material.name) : -1);
   advance = add("advance");
   if (contents.cloth) finish_cloth = add("finish cloth");
+  if (contents.sleep) sleep = add("sleep");
   statistics = add("statistics");
 }
 

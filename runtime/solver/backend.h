@@ -43,7 +43,9 @@ struct SolverSettings {
   std::uint64_t particle_capacity;
   std::uint64_t pair_capacity; // 0: grows
   bool keep_free_distances =
-      true; // false is for tests: every particle is asked for contacts in every substep, with the same result
+      true;              // false is for tests: every particle is asked for contacts in every substep, with the same result
+  float sleep_speed = 0; // m/s; 0: nothing sleeps
+  float sleep_delay = 0; // s
 };
 
 // A collider during a step: it moves from `start` to `end`.
@@ -58,6 +60,7 @@ struct StepInput {
   std::uint32_t substeps, iterations;
   Vec3<float> gravity;
   std::vector<ColliderState> colliders;
+  bool wake = false;         // all that sleeps
   float stiffness_share = 1; // the least of the materials; for the statistics
 };
 

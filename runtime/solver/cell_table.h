@@ -36,7 +36,8 @@ struct CellTable {
   const std::uint32_t *materials;
   const int *neighbour_counts;
   const int *close_counts;
-  int spare_rows; // index of the first row that belongs to no particle
+  int spare_rows;                   // index of the first row that belongs to no particle
+  const std::uint8_t *active_cells; // whose particles are visited; null: all
 };
 
 } // namespace loam

@@ -50,13 +50,16 @@ private:
     Array<float> strains, histories, drifts, log_volumes, rest_volumes;
     Array<std::uint32_t> ids, materials;
     Array<float> free_distances; // while there are costly shapes
+    Array<float> rests;          // where something may sleep
     ParticleArrays arrays() {
-      return {positions.data(),   velocities.data(),   strains.data(), histories.data(), drifts.data(),
-              log_volumes.data(), rest_volumes.data(), ids.data(),     materials.data(), free_distances.data()};
+      return {positions.data(), velocities.data(),     strains.data(),      histories.data(),
+              drifts.data(),    log_volumes.data(),    rest_volumes.data(), ids.data(),
+              materials.data(), free_distances.data(), rests.data()};
     }
     std::uint64_t bytes() const {
       return positions.bytes() + velocities.bytes() + strains.bytes() + histories.bytes() + drifts.bytes() +
-             log_volumes.bytes() + rest_volumes.bytes() + ids.bytes() + materials.bytes() + free_distances.bytes();
+             log_volumes.bytes() + rest_volumes.bytes() + ids.bytes() + materials.bytes() + free_distances.bytes() +
+             rests.bytes();
     }
   };
   ParticleStorage make_storage() {
@@ -64,7 +67,8 @@ private:
             executor_.template array<float>(),         executor_.template array<float>(),
             executor_.template array<float>(),         executor_.template array<float>(),
             executor_.template array<float>(),         executor_.template array<std::uint32_t>(),
-            executor_.template array<std::uint32_t>(), executor_.template array<float>()};
+            executor_.template array<std::uint32_t>(), executor_.template array<float>(),
+            executor_.template array<float>()};
   }
   void reserve_storage(ParticleStorage &storage, std::size_t rows);
   void reserve_histories();
@@ -80,6 +84,10 @@ private:
   void search_neighbours();
   void compile_schedule(bool colliders);
   void make_grid();
+  void wake_all();
+  bool all_asleep(const StepInput &input, std::uint32_t index);
+  void find_active_cells();
+  void fall_asleep();
   void prepare_contacts(const StepInput &input, std::uint32_t index);
   void prepare_free_distances();
   using ClothSubstep = typename ClothSolver<Executor>::Substep;
@@ -134,7 +142,9 @@ private:
   Array<std::uint32_t> keys_, order_;
   Array<float> x_, y_, z_;
   Array<int> cell_starts_, neighbour_counts_, close_counts_;
-  Array<int> counters_; // speed limited, strain limited, contacts, strain decomposed
+  Array<std::uint8_t> awake_cells_, near_cells_, active_cells_; // where something may sleep
+  long long awake_ = 1;                                         // particles, as far as is known; 0 only if none is
+  Array<int> counters_;                                         // speed limited, strain limited, contacts, strain decomposed
   Array<float> corrections_, densities_;
   Array<float> meetings_; // material by material
   bool contact_between_materials_ = false;
@@ -163,8 +173,10 @@ Solver<Executor>::Solver(const SolverSettings &settings, const ExecutionSettings
       order_(executor_.template array<std::uint32_t>()), x_(executor_.template array<float>()),
       y_(executor_.template array<float>()), z_(executor_.template array<float>()),
       cell_starts_(executor_.template array<int>()), neighbour_counts_(executor_.template array<int>()),
-      close_counts_(executor_.template array<int>()), counters_(executor_.template array<int>()),
-      corrections_(executor_.template array<float>()), densities_(executor_.template array<float>()),
+      close_counts_(executor_.template array<int>()), awake_cells_(executor_.template array<std::uint8_t>()),
+      near_cells_(executor_.template array<std::uint8_t>()), active_cells_(executor_.template array<std::uint8_t>()),
+      counters_(executor_.template array<int>()), corrections_(executor_.template array<float>()),
+      densities_(executor_.template array<float>()),
       meetings_(executor_.template array<float>()), jacobi_rows_{executor_.template array<Row>(),
                                                                  executor_.template array<Row>(),
                                                                  executor_.template array<Row>()},
@@ -200,6 +212,7 @@ template <class Executor> void Solver<Executor>::reserve_storage(ParticleStorage
   grow(storage.rest_volumes, 1);
   grow(storage.ids, 1);
   grow(storage.materials, 1);
+  if (settings_.sleep_speed > 0) grow(storage.rests, 1);
   if (histories_in_use_) grow(storage.histories, 1);
   if (drifts_in_use_) grow(storage.drifts, 3);
 }
@@ -313,6 +326,8 @@ template <class Executor> void Solver<Executor>::add_particles(const NewParticle
   }
   if (drifts_in_use_) executor_.set(now_.drifts.data() + 3 * at, 3 * count, 0.0f);
   if (now_.free_distances.capacity() > 0) executor_.set(now_.free_distances.data() + at, count, 0.0f);
+  if (now_.rests.capacity() > 0) executor_.set(now_.rests.data() + at, count, 0.0f);
+  awake_ = 1;
   count_ += count;
 }
 
@@ -354,6 +369,8 @@ template <class Executor> std::vector<MemoryUse> Solver<Executor>::memory() cons
   const std::uint64_t colliders = collider_views_.bytes() + contacts_.bytes() + shapes_.bytes();
   if (colliders > 0) uses.push_back({"colliders", colliders});
   if (cloth_.bytes() > 0) uses.push_back({"cloth", cloth_.bytes()});
+  if (settings_.sleep_speed > 0)
+    uses.push_back({"sleep", awake_cells_.bytes() + near_cells_.bytes() + active_cells_.bytes()});
   if (densities_.bytes() > 0) uses.push_back({"mapped densities", densities_.bytes()});
   return uses;
 }
@@ -363,3 +380,5 @@ template <class Executor> std::vector<MemoryUse> Solver<Executor>::memory() cons
 #include "solver/edit.h"
 #include "solver/step.h"
 #include "solver/substep.h"
+
+#include "solver/sleeping.h"

@@ -11,6 +11,7 @@
 #include "kernels/inelastic/solve_jacobi.h"
 #include "kernels/inelastic/update_strain.h"
 #include "kernels/integration/position_correction.h"
+#include "kernels/integration/sleep.h"
 #include "kernels/integration/velocity_smoothing.h"
 #include "kernels/materials/laws.h"
 #include "kernels/neighbours/compute_gradients.h"
@@ -46,7 +47,7 @@ template <class... L> struct StagesOfLaws<TypeList<L...>> {
 
 using TeamStages = Concatenate<
     TypeList<ComputeGradients<false>, ComputeGradients<true>, CorrectPositionsInTurn, CorrectPositionsAtOnce,
-             SmoothVelocities, JacobiApply<false>, JacobiApply<true>>,
+             SmoothVelocities, LookAround, JacobiApply<false>, JacobiApply<true>>,
     StagesOfForm<Elastic, ProjectedTensor<false>>, // semi-implicit plasticity of matter that resists no zero-energy modes
     StagesOfLaws<Laws>::Type>::Type;
 using CandidateStages = TypeList<CountNeighbours, FillNeighbours>;

@@ -20,9 +20,11 @@ template <class Executor> void Solver<Executor>::step(const StepInput &input) {
   const auto begin = std::chrono::steady_clock::now();
   executor_.lap();
   executor_.session([&] {
+    if (input.wake && schedule_.sleep >= 0) wake_all();
     if (count_ > 0 || !cloth_.empty())
       for (std::uint32_t i = 0; i < input.substeps; ++i) {
-        substep(input, i);
+        const bool idle = schedule_.sleep >= 0 && count_ > 0 && all_asleep(input, i) && cloth_.empty();
+        if (!idle) substep(input, i);
         ++statistics_.substeps_done;
         statistics_.pairs = pairs_;
         statistics_.pair_visits += pairs_ * input.iterations;
@@ -41,6 +43,7 @@ template <class Executor> void Solver<Executor>::compile_schedule(bool colliders
   contents.velocity_smoothing = settings_.velocity_smoothing > 0.0f;
   contents.colliders = colliders;
   contents.cloth = cloth;
+  contents.sleep = settings_.sleep_speed > 0.0f;
   schedule_.compile(contents);
   schedule_is_current_ = true;
   schedule_has_colliders_ = colliders;
@@ -87,6 +90,7 @@ template <class Executor> void Solver<Executor>::search_neighbours() {
   std::swap(now_, other_);
   ex.for_each(count_, MarkCells{keys_.data(), cell_starts_.data(), count_, cells});
   lap(schedule_.sort, particles());
+  if (schedule_.sleep >= 0) find_active_cells();
 
   const float r = settings_.kernel_radius, least = settings_.minimum_distance * r;
   // Pairs that can come too close within the substep; a pair's approach is a fraction of r in any motion that is resolved.
@@ -238,6 +242,8 @@ template <class Executor> void Solver<Executor>::finish_statistics(const StepInp
   const MotionMeasure::Value motion =
       executor_.reduce(count_, MotionMeasure{now_.positions.data(), now_.velocities.data(), now_.strains.data()});
   statistics_.particles = particles();
+  if (schedule_.sleep >= 0)
+    statistics_.sleeping = static_cast<std::uint64_t>(executor_.reduce(count_, CountSleepers{now_.rests.data()}));
   statistics_.contacts =
       contact_count_ > 0 ? static_cast<std::uint64_t>(executor_.reduce(contact_count_, SumPlanes{contacts_.data()})) : 0;
   statistics_.non_finite = static_cast<std::uint64_t>(motion.non_finite);

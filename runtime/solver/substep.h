@@ -23,6 +23,8 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
     throw;
   }
 
+  // Stages that write another copy of the velocities write those of visited particles only.
+  if (schedule_.sleep >= 0) ex.copy(other_.velocities.data(), now_.velocities.data(), static_cast<std::size_t>(count_));
   if (!cloth_.empty()) {
     cloth_.prepare(cloth_substep(input));
     lap(schedule_.prepare_cloth, cloth_.constraint_count());
@@ -52,6 +54,11 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
     ex.for_each(contact_count_, SweepContacts{contacts_.data(), now_.positions.data(), now_.velocities.data(),
                                               collider_views_.data(), colliders, h_, margin});
     lap(schedule_.final_contacts, static_cast<std::uint64_t>(contact_count_));
+  }
+
+  if (schedule_.sleep >= 0) {
+    ex.for_each(count_, HoldSleepers{now_.velocities.data(), now_.rests.data()});
+    lap(schedule_.sleep, 0);
   }
 
   // Strain and position with the same velocity.
@@ -87,6 +94,7 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
     cloth_.finish(cloth_substep(input), counters_.data());
     lap(schedule_.finish_cloth, cloth_.vertex_count());
   }
+  if (schedule_.sleep >= 0) fall_asleep();
 }
 
 template <class Executor> typename Solver<Executor>::ClothSubstep Solver<Executor>::cloth_substep(const StepInput &input) {

@@ -75,6 +75,7 @@ std::string make_statistics_json(const Scene &scene, const RunStatistics &run) {
   json["least_stiffness_share"] = stiffness_share;
   json["contacts"] = last.contacts;
   json["kinetic_energy"] = last.kinetic_energy;
+  json["sleeping"] = last.sleeping;
   json["virial"] = last.virial;
   json["residual"] = last.residual;
   json["state_hash"] = fmt::format("{:016x}", run.state_hash);
@@ -82,11 +83,11 @@ std::string make_statistics_json(const Scene &scene, const RunStatistics &run) {
 }
 
 std::string make_series_csv(const RunStatistics &run) {
-  std::string csv = "frame,time,watched,max_speed,mean_speed,virial,residual,outside,step_seconds\n";
+  std::string csv = "frame,time,watched,max_speed,mean_speed,virial,residual,outside,step_seconds,sleeping\n";
   for (const FrameRecord &frame : run.frames) {
     const loam_statistics &s = frame.statistics;
-    csv += fmt::format("{},{:.6f},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g}\n", frame.frame, frame.time, frame.watched,
-                       s.max_speed, s.mean_speed, s.virial, s.residual, frame.outside, s.step_seconds);
+    csv += fmt::format("{},{:.6f},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g},{}\n", frame.frame, frame.time, frame.watched,
+                       s.max_speed, s.mean_speed, s.virial, s.residual, frame.outside, s.step_seconds, s.sleeping);
   }
   return csv;
 }

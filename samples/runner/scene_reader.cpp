@@ -86,6 +86,8 @@ private:
     table->read("plasticity", def.plasticity, plasticities);
     table->read("multiplier", def.multiplier, multipliers);
     table->read("zero_energy_stiffness", def.zero_energy_stiffness);
+    table->read("sleep_speed", def.sleep_speed);
+    table->read("sleep_delay", def.sleep_delay);
     table->read("velocity_smoothing", def.velocity_smoothing);
     table->read("minimum_distance", def.minimum_distance);
     table->read("gradient_cutoff", def.gradient_cutoff);

@@ -107,6 +107,44 @@ TEST(SameBitsOfEveryLaw, ForAnyNumberOfThreadsAndInstructionSet) {
   }
 }
 
+/* A block falls onto a layer that is falling asleep: particles sleep and wake. */
+TEST(SameBitsOfSleep, ForAnyNumberOfThreadsAndInstructionSet) {
+  const scenes::Scene layer = scenes::slab(scenes::sand(), 24, 0.2f, 5);
+  scenes::Scene block = scenes::drop_block(scenes::sand(), 5, 0.15f);
+  block.planes.clear();
+  for (const std::uint32_t solver : {LOAM_SOLVER_GAUSS_SEIDEL, LOAM_SOLVER_JACOBI}) {
+    std::uint64_t most = 0;
+    const auto hash = [&](std::uint32_t threads, std::uint32_t set) {
+      loam_world_def def = scenes::world_def(layer);
+      def.particle_capacity += block.count();
+      def.solver = solver;
+      def.thread_count = threads;
+      def.instruction_set = set;
+      def.substeps = 8;
+      def.sleep_speed = 0.02f;
+      def.sleep_delay = 0.05f;
+      scenes::World world(def, layer);
+      world.add(block);
+      bool woken = false;
+      for (int frame = 0; frame < 30; ++frame) {
+        world.step(1.0f / 120);
+        const std::uint64_t now = world.statistics().sleeping;
+        woken = woken || now + 50 < most;
+        most = std::max(most, now);
+      }
+      EXPECT_GT(most, 100u);
+      EXPECT_TRUE(woken);
+      return world.state_hash();
+    };
+    const std::uint64_t expected = hash(1, LOAM_INSTRUCTION_SET_AUTO);
+    EXPECT_EQ(hash(3, LOAM_INSTRUCTION_SET_AUTO), expected);
+    for (std::uint32_t set = LOAM_INSTRUCTION_SET_PORTABLE; set <= LOAM_INSTRUCTION_SET_AVX512; ++set)
+      if (has(set)) {
+        EXPECT_EQ(hash(2, set), expected) << set;
+      }
+  }
+}
+
 /* Above 30000 particles cells are coloured in another way. */
 TEST(SameBitsOfALargeScene, ForAnyNumberOfThreadsAndInstructionSet) {
   if (hooks::short_run()) GTEST_SKIP() << "too slow with a sanitizer";

@@ -76,6 +76,10 @@ loam_world_def random_world(Random &random) {
   if (random.chance(0.3)) def.minimum_distance = random.chance(0.3) ? 0.0f : random.between(0, 1);
   if (random.chance(0.3)) def.gradient_cutoff = random.log_between(0.01, 1);
   def.multiplier = random.chance(0.4) ? LOAM_MULTIPLIER_SCALAR : LOAM_MULTIPLIER_PROJECTED_TENSOR;
+  if (random.chance(0.2)) {
+    def.sleep_speed = random.log_between(1e-4, 10);
+    def.sleep_delay = random.log_between(0.01, 0.1);
+  }
   if (random.chance(0.3)) def.zero_energy_stiffness = random.chance(0.3) ? 0.0f : random.log_between(0.01, 100);
   def.particle_capacity = std::uint64_t(random.log_between(random.chance(0.2) ? 1 : 100, 2500));
   if (random.chance(0.1)) def.pair_capacity = std::uint64_t(random.log_between(1, 1e5));

@@ -23,6 +23,7 @@ struct Settings {
   bool jacobi = false, projected_tensor = true;
   std::uint32_t substeps = 8, iterations = 3;
   Vec3<float> gravity{0, -9.81f, 0};
+  float sleep_speed = 0;
 };
 
 // One solver with a scene in it. With two materials, particles take them by turns.
@@ -30,8 +31,10 @@ class Rig {
 public:
   Rig(Runs runs, const scenes::Scene &scene, const Settings &settings, const std::vector<loam_material_def> &materials)
       : count_(scene.count()) {
-    const SolverSettings solver = {scene.spacing, 0.2f,   0.75f, 20.0f, settings.jacobi, false, settings.projected_tensor,
-                                   1.0f,          count_, 0};
+    SolverSettings solver = {scene.spacing, 0.2f,   0.75f, 20.0f, settings.jacobi, false, settings.projected_tensor,
+                             1.0f,          count_, 0};
+    solver.sleep_speed = settings.sleep_speed;
+    solver.sleep_delay = 0.05f;
     ExecutionSettings execution = {};
     execution.thread_count = runs == Runs::emulated_backwards ? 2 : 1;
     execution.instruction_set = best_instruction_set();

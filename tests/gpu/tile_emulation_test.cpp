@@ -143,6 +143,25 @@ TEST_P(EachOrder, OfCudaGivesTheEmulationsBits) {
   }
 }
 
+// A pile of sand comes to rest. Whether a particle sleeps is a matter of thresholds, so roundings may tell a few apart for a while.
+TEST(TileEmulation, MatterFallsAsleepAsOnTheCpu) {
+  const scenes::Scene scene = scenes::resting_pile(scenes::sand(), 8);
+  Settings settings;
+  settings.sleep_speed = 0.02f;
+  Rig cpu(Runs::cpu, scene, settings, {scene.material}), emulated(Runs::emulated, scene, settings, {scene.material});
+  int together = 0, steps = 0;
+  const auto all_sleep = [&](Rig &rig) { return rig.backend().statistics().sleeping == scene.count(); };
+  for (; steps < 120 && !(all_sleep(cpu) && all_sleep(emulated)); ++steps) {
+    cpu.step(1.0f / 120);
+    emulated.step(1.0f / 120);
+    const auto a = cpu.backend().statistics().sleeping, b = emulated.backend().statistics().sleeping;
+    together += std::max(a, b) - std::min(a, b) <= scene.count() / 20 ? 1 : 0;
+  }
+  EXPECT_TRUE(all_sleep(cpu) && all_sleep(emulated));
+  EXPECT_GE(together, steps * 8 / 10);
+  EXPECT_LT(greatest_difference(cpu.positions(), emulated.positions()), 0.02f * scene.spacing);
+}
+
 // The whole scene: a column of sand that collapses.
 TEST(TileEmulation, ColumnCollapseAgreesWithTheCpu) {
   const scenes::Scene scene = scenes::axisymmetric_column(scenes::sand(), 6, 1);

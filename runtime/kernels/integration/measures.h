@@ -148,6 +148,7 @@ struct StateHash {
       for (int k = 0; k < 3; ++k) h = mix(h, bits(particles.drifts[3 * static_cast<long>(i) + k]));
     h = mix(h, bits(particles.log_volumes[i]));
     h = mix(h, bits(particles.rest_volumes[i]));
+    if (particles.rests != nullptr) h = mix(h, bits(particles.rests[i]));
     h = mix(h, particles.ids[i]);
     return mix(h, particles.materials[i]);
   }

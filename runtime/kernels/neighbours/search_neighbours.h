@@ -30,9 +30,16 @@ struct CountNeighbours {
   CandidateTest test;
   int *neighbour_counts;
   int *close_counts;
+  const std::uint32_t *keys;
+  const std::uint8_t *active_cells; // null: all
 
   template <class Team> LOAM_FN void operator()(Team &team, int i) const {
     int total = 0, close = 0;
+    if (active_cells != nullptr && active_cells[keys[i]] == 0) { // not visited
+      team.store(neighbour_counts, i, 0);
+      team.store(close_counts, i, 0);
+      return;
+    }
     for (auto packet : team.candidates(i)) {
       const auto found = test(team, packet);
       total += team.count(found.near);

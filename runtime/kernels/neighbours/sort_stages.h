@@ -20,6 +20,7 @@ struct ParticleArrays {
   std::uint32_t *ids;
   std::uint32_t *materials;
   float *free_distances; // see kernels/contact/free_distance.h; no part of the state
+  float *rests;          // see kernels/integration/sleep.h; null where nothing may sleep
 };
 
 LOAM_FN void move_particle(const ParticleArrays &from, long j, const ParticleArrays &to, long i) {
@@ -34,6 +35,7 @@ LOAM_FN void move_particle(const ParticleArrays &from, long j, const ParticleArr
   to.ids[i] = from.ids[j];
   to.materials[i] = from.materials[j];
   if (to.free_distances != nullptr) to.free_distances[i] = from.free_distances[j];
+  if (to.rests != nullptr) to.rests[i] = from.rests[j];
 }
 
 struct AssignCells {
