@@ -51,14 +51,15 @@ TEST(Column, RunOutFollowsWhatItShouldAndNothingElse) {
   EXPECT_GT(base.nearest, 0.65);
 }
 
-/* Lube et al. 2005 and Lajeunesse et al. 2005 measured 1.2 to 1.8 a between walls. The angle is that which acts as 30 degrees in plane strain. */
+/* Between walls, Lube et al. 2005 measured 1.2 a, for tall slabs 1.9 a^(2/3), and Lajeunesse et al. 2005 1.8 a for these: at a = 3 the band reaches down to 15 %
+ * under the lower one, which leaves out no more than a slab of seven spacings does not resolve. The angle is that which acts as 30 degrees in plane strain. */
 TEST(Slab, RunOutMeetsTheExperimentsBands) {
   struct Case {
     int length; // a low slab needs more layers to run out in full
     float aspect;
     double least, most;
   };
-  for (const auto &[length, aspect, least, most] : {Case{20, 1, 1.2, 1.8}, Case{10, 2, 2.4, 3.6}}) {
+  for (const auto &[length, aspect, least, most] : {Case{20, 1, 1.2, 1.8}, Case{10, 2, 2.4, 3.6}, Case{7, 3, 3.36, 5.4}}) {
     Collapse slab(scenes::slab(scenes::sand(22.2f), length, aspect, 5, 1));
     slab.def.velocity_smoothing = 0;
     slab.seconds = 0.8;
