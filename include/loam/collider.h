@@ -48,7 +48,7 @@ typedef struct loam_collider_def {
   uint32_t kind;     /* LOAM_COLLIDER_*; default PLANE */
   float position[3]; /* where the collider's origin is, metres; default 0 */
   float rotation[4]; /* unit quaternion x, y, z, w; default identity; normalised by the library */
-  float friction;    /* Coulomb coefficient against all matter, 0 to 100; default 0.6 */
+  float friction;    /* Coulomb coefficient, 0 to 100; default 0.6; for a material of its own see loam_collider_set_contact */
   uint32_t reserved; /* 0 */
   loam_mesh mesh;    /* MESH and HULL only, in the collider's own frame; copied */
 
@@ -58,6 +58,9 @@ typedef struct loam_collider_def {
   float half_extents[3];
   uint32_t reserved_2;     /* 0 */
   loam_distance_grid grid; /* copied */
+
+  float restitution; /* see loam_collider_contact; default 0 */
+  float stick;       /* the same; default 0 */
 } loam_collider_def;
 
 /* Errors: INVALID_ARGUMENT for null or an unknown size. */
@@ -82,6 +85,31 @@ LOAM_API loam_status loam_collider_move(loam_world *world, loam_collider_id coll
 /* Like move, but at once and without a velocity: a teleport. Matter that was inside or in between is not pushed. */
 LOAM_API loam_status loam_collider_place(loam_world *world, loam_collider_id collider, const float position[3],
                                          const float rotation[4]);
+
+/* How matter behaves on a collider. */
+typedef struct loam_collider_contact {
+  uint32_t struct_size; /* set by the caller */
+  float friction;       /* Coulomb coefficient, 0 to 100 */
+
+  /* Share of the speed, relative to the surface, at which a particle leaves after it hit: 0 to 1. Impacts slower than what gravity gives in four
+   * substeps do not bounce, so that matter can rest. */
+  float restitution;
+
+  /* The tension, pascals, by which the surface holds on to what touches it: 0 to 1e9. It acts on a particle's own face, the power 2/3 of its volume, and
+   * friction acts as if matter were pressed on by so much more. It lets go a tenth of half a kernel radius away from contact. A layer of
+   * height H hangs from a ceiling if stick exceeds density x gravity x H. */
+  float stick;
+} loam_collider_contact;
+
+/* How one material behaves on one collider, from the next step on. `material` 0 stands for all that have no contact of their own with this
+ * collider, as the definition said; `contact` null takes a material's own away again. It ends with the material.
+ * Errors: INVALID_HANDLE; INVALID_ARGUMENT naming the field, or for null with material 0. */
+LOAM_API loam_status loam_collider_set_contact(loam_world *world, loam_collider_id collider, loam_material_id material,
+                                               const loam_collider_contact *contact);
+
+/* What holds for a material, or with `material` 0 for all that have no contact of their own. Errors: INVALID_HANDLE, INVALID_ARGUMENT. */
+LOAM_API loam_status loam_collider_get_contact(const loam_world *world, loam_collider_id collider, loam_material_id material,
+                                               loam_collider_contact *contact);
 
 /* What the library found in a collider's mesh. Without a mesh all counts are 0. */
 typedef struct loam_collider_report {

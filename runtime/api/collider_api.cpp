@@ -63,6 +63,28 @@ loam_status loam_collider_place(loam_world *world, loam_collider_id collider, co
   return pose(world, collider, position, rotation, true);
 }
 
+loam_status loam_collider_set_contact(loam_world *world, loam_collider_id collider, loam_material_id material,
+                                      const loam_collider_contact *contact) {
+  return guarded(world, [&] {
+    check_pointer(world, "world");
+    if (contact == nullptr) {
+      world->set_contact(collider, material, nullptr);
+      return;
+    }
+    const loam_collider_contact copy = read_definition(contact, "contact", loam_collider_contact{});
+    world->set_contact(collider, material, &copy);
+  });
+}
+
+loam_status loam_collider_get_contact(const loam_world *world, loam_collider_id collider, loam_material_id material,
+                                      loam_collider_contact *contact) {
+  return guarded(world, [&] {
+    check_pointer(world, "world");
+    check_pointer(contact, "contact");
+    write_definition(contact, "contact", contact->struct_size, world->contact(collider, material));
+  });
+}
+
 loam_status loam_collider_get_report(const loam_world *world, loam_collider_id collider, loam_collider_report *report) {
   return guarded(world, [&] {
     check_pointer(world, "world");

@@ -28,6 +28,13 @@ void check_hooks(const loam_world_def &def) {
     throw Error(LOAM_ERROR_INVALID_ARGUMENT, "job_system has only one of enqueue and finish; give both or neither");
 }
 
+ContactLaw make_contact_law(float friction, float restitution, float stick) {
+  check_range("friction", static_cast<double>(friction), 0, 100);
+  check_range("restitution", static_cast<double>(restitution), 0, 1);
+  check_range("stick", static_cast<double>(stick), 0, 1e9);
+  return {friction, restitution, stick};
+}
+
 } // namespace
 
 loam_world_def default_world() {
@@ -131,7 +138,7 @@ void loam_world::step(float seconds) {
   for (std::size_t i = 0; i < colliders_.size(); ++i)
     if (const Collider *c = colliders_.at_index(i); c != nullptr) {
       if (cloths_.any()) index_of_slot_[i] = static_cast<int>(input_.colliders.size());
-      input_.colliders.push_back({c->shape, c->friction, c->pose, c->target});
+      input_.colliders.push_back({c->shape, c->law, c->pose, c->target, c->pairs});
     }
   cloths_.use_colliders(backend_->cloth(), index_of_slot_);
   try {
@@ -264,6 +271,9 @@ void loam_world::destroy_material(loam_material_id id) {
                 format("material \"%s\" has %llu particles", m.def.name, static_cast<unsigned long long>(m.particles)));
   const std::size_t slot = materials_.index_of(id, "material");
   std::erase_if(contacts_, [slot](const Contact &c) { return c.a == slot || c.b == slot; });
+  for (std::size_t i = 0; i < colliders_.size(); ++i)
+    if (Collider *c = colliders_.at_index(i); c != nullptr)
+      std::erase_if(c->pairs, [slot](const PairLaw &pair) { return pair.material == slot; });
   materials_.remove(id, "material");
   send_materials();
 }
@@ -273,11 +283,10 @@ const loam_material_def &loam_world::material(loam_material_id id) const { retur
 // ----------------------------------------------------------------------------------------------------- colliders ---
 
 loam_collider_id loam_world::create_collider(const loam_collider_def &def) {
-  check_range("friction", static_cast<double>(def.friction), 0, 100);
   check_reserved("reserved", def.reserved);
   check_reserved("reserved_2", def.reserved_2);
   Collider collider;
-  collider.friction = def.friction;
+  collider.law = make_contact_law(def.friction, def.restitution, def.stick);
   collider.pose = collider.target = make_pose(def.position, def.rotation);
   (void)colliders_.next_id(); // room for one more
   collider.shape = backend_->add_shape(make_collider_shape(def, collider.report));
@@ -299,6 +308,39 @@ void loam_world::pose_collider(loam_collider_id id, const float position[3], con
   if (!at_once) return;
   collider.pose = collider.target;
   input_.wake = true;
+}
+
+void loam_world::set_contact(loam_collider_id id, loam_material_id material, const loam_collider_contact *contact) {
+  Collider &collider = colliders_.at(id, "collider");
+  if (material == 0) {
+    if (contact == nullptr)
+      throw Error(LOAM_ERROR_INVALID_ARGUMENT, "contact is null with material 0: a collider has a contact of its own");
+    collider.law = make_contact_law(contact->friction, contact->restitution, contact->stick);
+    return;
+  }
+  const auto slot = static_cast<std::uint32_t>(materials_.index_of(material, "material"));
+  const auto of_it = [slot](const PairLaw &pair) { return pair.material == slot; };
+  if (contact == nullptr) {
+    std::erase_if(collider.pairs, of_it);
+    return;
+  }
+  const ContactLaw law = make_contact_law(contact->friction, contact->restitution, contact->stick);
+  const auto found = std::find_if(collider.pairs.begin(), collider.pairs.end(), of_it);
+  if (found != collider.pairs.end())
+    found->law = law;
+  else
+    collider.pairs.push_back({slot, law});
+}
+
+loam_collider_contact loam_world::contact(loam_collider_id id, loam_material_id material) const {
+  const Collider &collider = colliders_.at(id, "collider");
+  ContactLaw law = collider.law;
+  if (material != 0) {
+    const std::size_t slot = materials_.index_of(material, "material");
+    for (const PairLaw &pair : collider.pairs)
+      if (pair.material == slot) law = pair.law;
+  }
+  return {sizeof(loam_collider_contact), law.friction, law.restitution, law.stick};
 }
 
 loam_collider_report loam_world::collider_report(loam_collider_id id) const { return colliders_.at(id, "collider").report; }

@@ -42,6 +42,8 @@ public:
   loam_collider_id create_collider(const loam_collider_def &def);
   void destroy_collider(loam_collider_id id);
   void pose_collider(loam_collider_id id, const float position[3], const float rotation[4], bool at_once);
+  void set_contact(loam_collider_id id, loam_material_id material, const loam_collider_contact *contact);
+  loam_collider_contact contact(loam_collider_id id, loam_material_id material) const;
   loam_collider_report collider_report(loam_collider_id id) const;
 
   loam::ClothScene &cloths() { return cloths_; }
@@ -66,7 +68,8 @@ private:
   };
   struct Collider {
     int shape = -1; // as the backend numbers them
-    float friction = 0;
+    loam::ContactLaw law{};
+    std::vector<loam::PairLaw> pairs; // materials that have another law
     loam::Pose pose{}, target{};
     loam_collider_report report{};
   };

@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include <loam/loam.h>
 
+#include "kernels/contact/contact_law.h"
 #include "kernels/contact/pose.h"
 #include "kernels/materials/laws.h"
 #include "schedule/schedule.h"
@@ -48,11 +50,18 @@ struct SolverSettings {
   float sleep_delay = 0; // s
 };
 
+// The law of contact with one material, by its number.
+struct PairLaw {
+  std::uint32_t material;
+  ContactLaw law;
+};
+
 // A collider during a step: it moves from `start` to `end`.
 struct ColliderState {
   int shape; // as add_shape() answered
-  float friction;
+  ContactLaw law;
   Pose start, end;
+  std::span<const PairLaw> pairs = {}; // materials that have another law
 };
 
 struct StepInput {

@@ -18,6 +18,7 @@
 #include "solver/cloth_solver.h"
 #include "solver/collider_motion.h"
 #include "solver/collider_shapes.h"
+#include "solver/contact_laws.h"
 #include "solver/stages.h"
 
 namespace loam {
@@ -150,6 +151,7 @@ private:
   bool contact_between_materials_ = false;
   Array<Row> jacobi_rows_[3], jacobi_drift_rows_[3];
   ColliderShapes<Executor> shapes_{executor_};
+  ContactLaws<Executor> contact_laws_{executor_};
   std::vector<ColliderView> views_, views_before_; // of this substep and the one before
   ColliderMotion collider_motion_;
   bool free_distances_hold_ = false; // what they say was true at the end of views_before_
@@ -366,7 +368,7 @@ template <class Executor> std::vector<MemoryUse> Solver<Executor>::memory() cons
     for (const Array<Row> &column : jacobi_drift_rows_) bytes += column.bytes();
     uses.push_back({"Jacobi solver", bytes});
   }
-  const std::uint64_t colliders = collider_views_.bytes() + contacts_.bytes() + shapes_.bytes();
+  const std::uint64_t colliders = collider_views_.bytes() + contacts_.bytes() + shapes_.bytes() + contact_laws_.bytes();
   if (colliders > 0) uses.push_back({"colliders", colliders});
   if (cloth_.bytes() > 0) uses.push_back({"cloth", cloth_.bytes()});
   if (settings_.sleep_speed > 0)

@@ -6,6 +6,7 @@ namespace loam {
 template <class Executor> void Solver<Executor>::step(const StepInput &input) {
   compile_schedule(!input.colliders.empty());
   schedule_.begin_step();
+  contact_laws_.prepare(input.colliders, materials_.size());
 
   const float g = length(input.gravity);
   up_ = g > 0.0f ? (-1.0f / g) * input.gravity : Vec3<float>{0, 1, 0};
@@ -164,7 +165,8 @@ template <class Executor> void Solver<Executor>::prepare_contacts(const StepInpu
   collider_motion_ = {};
   for (const ColliderState &collider : input.colliders) {
     ColliderView view = {};
-    view.friction = collider.friction;
+    view.law = collider.law;
+    view.of_materials = contact_laws_.of(views_.size());
     view.start = interpolate(collider.start, collider.end, static_cast<double>(index) / input.substeps);
     view.end = interpolate(collider.start, collider.end, static_cast<double>(index + 1) / input.substeps);
     view.shape = shapes_.view(collider.shape);
@@ -176,12 +178,15 @@ template <class Executor> void Solver<Executor>::prepare_contacts(const StepInpu
   copy_in(collider_views_, views_);
 
   const float r = settings_.kernel_radius, stand_off = 0.5f * r;
+  // What gravity gives in four substeps is no impact.
+  const float rest_speed = 4.0f * h_ * length(input.gravity);
   const FreeDistances free_distances = {now_.free_distances.data(), collider_motion_.enough(stand_off + r) + 0.01f * r};
   for (int attempt = 0; attempt < 2; ++attempt) {
     executor_.set(counters_.data() + 2, 1, 0);
     executor_.for_each(count_, FindContacts{now_.positions.data(), now_.velocities.data(), collider_views_.data(),
                                             static_cast<int>(views_.size()), h_, stand_off, r, contacts_.data(),
-                                            static_cast<int>(contacts_.capacity()), counters_.data() + 2, free_distances});
+                                            static_cast<int>(contacts_.capacity()), counters_.data() + 2, free_distances,
+                                            now_.materials.data(), rest_speed});
     contact_count_ = executor_.read(counters_.data() + 2);
     if (static_cast<std::size_t>(contact_count_) <= contacts_.capacity()) break;
     const auto found = static_cast<std::size_t>(contact_count_);

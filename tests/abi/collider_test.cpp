@@ -209,6 +209,73 @@ TEST_F(Colliders, AGridMustBeOfDistances) {
   refuses_grid({"grid.reserved"}, [](Grid &grid, Values &) { grid.reserved = 1; });
 }
 
+TEST_F(Colliders, AContactIsOfAPairOrOfAllMaterials) {
+  const auto get = [&](loam_material_id material) {
+    loam_collider_contact contact = {};
+    contact.struct_size = sizeof contact;
+    EXPECT_EQ(scenes::outcome(loam_collider_get_contact(world(), collider_, material, &contact)), "LOAM_OK");
+    return contact;
+  };
+  EXPECT_EQ(get(0).friction, 0.6f);
+  EXPECT_EQ(get(material_).friction, 0.6f);
+  loam_collider_contact own = {sizeof own, 0.1f, 0.5f, 100}, all = {sizeof all, 0.9f, 0.25f, 7};
+  ASSERT_EQ(loam_collider_set_contact(world(), collider_, material_, &own), LOAM_OK);
+  ASSERT_EQ(loam_collider_set_contact(world(), collider_, 0, &all), LOAM_OK);
+  EXPECT_EQ(get(material_).friction, 0.1f);
+  EXPECT_EQ(get(material_).restitution, 0.5f);
+  EXPECT_EQ(get(material_).stick, 100.0f);
+  EXPECT_EQ(get(0).friction, 0.9f);
+  world_.step(1e-3f);
+  ASSERT_EQ(loam_collider_set_contact(world(), collider_, material_, nullptr), LOAM_OK);
+  EXPECT_EQ(get(material_).friction, 0.9f);
+  ASSERT_EQ(loam_collider_set_contact(world(), collider_, material_, &own), LOAM_OK);
+  ASSERT_EQ(loam_material_destroy(world(), material_), LOAM_OK); // its contact goes with it: the next in its slot has none
+  loam_material_id next = 0;
+  ASSERT_EQ(loam_material_create(world(), &scene_.material, &next), LOAM_OK);
+  EXPECT_EQ(get(next).friction, 0.9f);
+  world_.step(1e-3f);
+}
+
+TEST_F(Colliders, ContactsAreChecked) {
+  const loam_collider_contact good = {sizeof good, 0.1f, 0.5f, 100};
+  loam_collider_contact out = good;
+  invalid({"world is null"}, [&] { return loam_collider_set_contact(nullptr, collider_, material_, &good); });
+  invalid({"world is null"}, [&] { return loam_collider_get_contact(nullptr, collider_, material_, &out); });
+  invalid({"contact is null"}, [&] { return loam_collider_get_contact(world(), collider_, material_, nullptr); });
+  invalid({"contact is null", "material 0"}, [&] { return loam_collider_set_contact(world(), collider_, 0, nullptr); });
+  for (const std::uint32_t size : wrong_sizes(sizeof good)) {
+    out.struct_size = size;
+    invalid({"contact", std::to_string(size)}, [&] { return loam_collider_set_contact(world(), collider_, 0, &out); });
+    invalid({"contact", std::to_string(size)}, [&] { return loam_collider_get_contact(world(), collider_, 0, &out); });
+  }
+  out = good;
+  for (const loam_collider_id bad : {loam_collider_id(0), loam_collider_id(material_), ~loam_collider_id(0)}) {
+    refused(LOAM_ERROR_INVALID_HANDLE, {"collider"}, [&] { return loam_collider_set_contact(world(), bad, material_, &good); });
+    refused(LOAM_ERROR_INVALID_HANDLE, {"collider"}, [&] { return loam_collider_get_contact(world(), bad, material_, &out); });
+  }
+  for (const loam_material_id bad : {loam_material_id(collider_), ~loam_material_id(0)}) {
+    refused(LOAM_ERROR_INVALID_HANDLE, {"material"}, [&] { return loam_collider_set_contact(world(), collider_, bad, &good); });
+    refused(LOAM_ERROR_INVALID_HANDLE, {"material"}, [&] { return loam_collider_get_contact(world(), collider_, bad, &out); });
+  }
+  const auto with = [&](const char *field, auto &&spoil) {
+    loam_collider_contact bad = good;
+    spoil(bad);
+    for (const loam_material_id material : {loam_material_id(0), material_})
+      invalid({field}, [&] { return loam_collider_set_contact(world(), collider_, material, &bad); });
+    loam_collider_def def = plane();
+    def.friction = bad.friction;
+    def.restitution = bad.restitution;
+    def.stick = bad.stick;
+    refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {field});
+  };
+  for (const float bad : {-0.01f, nan, infinity, -infinity, 1e20f}) {
+    with("friction", [=](loam_collider_contact &contact) { contact.friction = bad; });
+    with("restitution", [=](loam_collider_contact &contact) { contact.restitution = bad; });
+    with("stick", [=](loam_collider_contact &contact) { contact.stick = bad; });
+  }
+  with("restitution", [](loam_collider_contact &contact) { contact.restitution = 1.01f; });
+}
+
 /* A host of the first version: its definition ends before the fields of solids. */
 TEST_F(Colliders, AnOlderDefinitionKeepsWorking) {
   constexpr std::size_t first = offsetof(loam_collider_def, radius);

@@ -62,7 +62,7 @@ public:
     input_.gravity = settings.gravity;
     for (const scenes::Plane &plane : scene.planes) { // the ground: planes of these scenes face up
       const Pose pose = {{plane.point[0], plane.point[1], plane.point[2]}, {0, 0, 0, 1}};
-      input_.colliders.push_back({backend_->add_shape(PlaneShape{}), plane.friction, pose, pose});
+      input_.colliders.push_back({backend_->add_shape(PlaneShape{}), {plane.friction, 0, 0}, pose, pose});
     }
   }
   void step(float seconds) {

@@ -51,7 +51,7 @@ struct ContactScene {
     return add_shape(shape, friction, pose);
   }
   int add_shape(const Shape &shape, float friction, Pose pose = {{0, 0, 0}, {0, 0, 0, 1}}) {
-    colliders.push_back({friction, pose, pose, shape});
+    colliders.push_back({{friction, 0, 0}, nullptr, pose, pose, shape});
     return int(colliders.size()) - 1;
   }
   // Where a collider is to be at the end of the next substep.

@@ -38,7 +38,7 @@ public:
     add_block({0, 0, 0});
     bowl_ = add_mesh(test::icosphere_mesh(0.12f, 3), at_origin);
     paddle_ = add_mesh(test::box_mesh({0.005f, 0.04f, 0.08f}), {{-0.08f, -0.03f, 0}, {0, 0, 0, 1}});
-    input_.colliders.push_back({backend_->add_shape(PlaneShape{}), 0.5f, at_origin, at_origin});
+    input_.colliders.push_back({backend_->add_shape(PlaneShape{}), {0.5f, 0, 0}, at_origin, at_origin});
     place(2, {{0, -0.11f, 0}, {0, 0, 0, 1}});
   }
 
@@ -83,7 +83,7 @@ private:
   }
   int add_mesh(const MeshData &data, const Pose &pose) {
     const int mesh = backend_->add_shape(build_bounding_volume_hierarchy(make_triangle_mesh(data.view(), "mesh")));
-    input_.colliders.push_back({mesh, 0.5f, pose, pose});
+    input_.colliders.push_back({mesh, {0.5f, 0, 0}, pose, pose});
     return mesh;
   }
   void place(std::size_t collider, const Pose &pose) {

@@ -3,14 +3,16 @@
 
 #include <cstdint>
 
+#include "kernels/contact/contact_law.h"
 #include "kernels/contact/pose.h"
 #include "kernels/contact/shape.h"
 
 namespace loam {
 
 struct ColliderView {
-  float friction;
-  Pose start, end; // at the start and the end of the substep
+  ContactLaw law;                 // with all materials
+  const ContactLaw *of_materials; // with each, by its number; null where one law holds for all
+  Pose start, end;                // at the start and the end of the substep
   Shape shape;
 };
 
@@ -31,6 +33,7 @@ struct ContactPlane {
   float gap;
   Vec3<float> surface_velocity; // of the collider at the contact point, for friction
   float friction;
+  float hold; // the plane may pull by so much, as a velocity change: 0 unless it is sticky
 };
 
 // The contacts of one particle, closest plane first, with the velocity changes accumulated over the iterations (impulse over mass).

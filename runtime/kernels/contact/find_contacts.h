@@ -77,6 +77,8 @@ struct FindContacts {
   int capacity;
   int *count; // zero before; counts on past the capacity, for the host to make room and run again
   FreeDistances free_distances = {nullptr, 0.0f};
+  const std::uint32_t *materials = nullptr; // of the particles; read where a collider has laws of its own for some. Null: of none
+  float rest_speed = 0.0f;                  // see ContactParticle
 
   LOAM_FN void operator()(int particle) const {
     if (free_distances.suffices(particle)) return;
@@ -86,9 +88,9 @@ struct FindContacts {
     float clearance = stand_off + reach, free = 1e30f;
     for (int i = 0; i < collider_count; ++i) {
       if (is_mesh(colliders[i].shape)) {
-        find_mesh(i, x, expected_reach(particle), list, clearance, free);
+        find_mesh(i, particle, x, list, clearance, free);
       } else {
-        find_solid(i, x, list, clearance, free);
+        find_solid(i, particle, x, list, clearance, free);
       }
     }
     free_distances.keep(particle, free);
@@ -120,45 +122,63 @@ private:
     return minimum(reach, 2.0f * substep * length(xyz(velocities[particle])) + 0.25f * reach);
   }
 
-  // The half space of a contact point in the collider's frame. `shift` is where the collider would carry the particle.
-  LOAM_FN ContactPlane plane_at(const ColliderView &collider, Vec3<float> point, Vec3<float> normal, float distance,
-                                Vec3<float> shift) const {
+  // Of a particle in a collider's frame.
+  struct Local {
+    int collider, particle;
+    Vec3<float> at;
+    Vec3<float> shift; // where the collider would carry it
+  };
+
+  // The half space of a contact point in the collider's frame.
+  LOAM_FN ContactPlane plane_at(const Local &local, Vec3<float> point, Vec3<float> normal, float distance) const {
+    const ColliderView &collider = colliders[local.collider];
     const float missing = minimum(stand_off - distance, stand_off);
     const float recovery = minimum(contact_recovery_share, substep / contact_recovery_time);
     ContactPlane plane;
     plane.normal = rotate(collider.end.rotation, normal);
-    plane.gap = (missing > 0.0f ? 0.0f - recovery * missing : 0.0f - missing) - dot(plane.normal, shift);
+    plane.gap = (missing > 0.0f ? 0.0f - recovery * missing : 0.0f - missing) - dot(plane.normal, local.shift);
     plane.surface_velocity = (1.0f / substep) * carried(collider, point);
-    plane.friction = collider.friction;
+    const ContactLaw &law =
+        collider.of_materials == nullptr || materials == nullptr ? collider.law : collider.of_materials[materials[local.particle]];
+    const Row &row = velocities[local.particle];
+    const ContactParticle matter = {xyz(row), row.w, positions[local.particle].w, substep, rest_speed};
+    plane.friction = law.friction;
+    plane.gap = gap_with_bounce(law, matter, plane.normal, plane.gap, plane.surface_velocity);
+    plane.hold = greatest_hold(law, matter, distance, stand_off);
     return plane;
   }
 
-  LOAM_FN void find_solid(int index, Vec3<float> x, PlaneList &list, float &clearance, float &free) const {
+  LOAM_FN Local local_of(int index, int particle, Vec3<float> x) const {
+    const Vec3<float> at = to_local(colliders[index].start, x);
+    return {index, particle, at, carried(colliders[index], at)};
+  }
+
+  LOAM_FN void find_solid(int index, int particle, Vec3<float> x, PlaneList &list, float &clearance, float &free) const {
     const ColliderView &collider = colliders[index];
-    const Vec3<float> local = to_local(collider.start, x);
-    const Vec3<float> shift = carried(collider, local);
-    const Surface surface = surface_of(collider.shape, local, stand_off + reach + length(shift));
+    const Local local = local_of(index, particle, x);
+    const float moved = length(local.shift);
+    const Surface surface = surface_of(collider.shape, local.at, stand_off + reach + moved);
     const float certain = certain_distance(collider.shape, surface);
-    clearance = minimum(clearance, certain - length(shift));
-    free = minimum(free, certain - FreeDistances::rounding(collider, x, local));
+    clearance = minimum(clearance, certain - moved);
+    free = minimum(free, certain - FreeDistances::rounding(collider, x, local.at));
     // A solid that is not convex may come from elsewhere than its nearest point: the sweep must look at it.
-    const bool by_force = !is_convex(collider.shape) && list.count == 0 && certain - length(shift) < reach;
-    if (!insert_solid(index, local, surface, shift, by_force, list)) return;
-    if (!is_convex(collider.shape)) find_walls(index, local, surface, shift, list);
+    const bool by_force = !is_convex(collider.shape) && list.count == 0 && certain - moved < reach;
+    if (!insert_solid(local, surface, by_force, list)) return;
+    if (!is_convex(collider.shape)) find_walls(local, surface, list);
   }
 
   // False if it is out of reach.
-  LOAM_FN bool insert_solid(int index, Vec3<float> local, const Surface &surface, Vec3<float> shift,
-                            bool even_if_out_of_reach, PlaneList &list) const {
-    const Vec3<float> point = local - surface.distance * surface.normal;
-    const ContactPlane plane = plane_at(colliders[index], point, surface.normal, surface.distance, shift);
+  LOAM_FN bool insert_solid(const Local &local, const Surface &surface, bool even_if_out_of_reach, PlaneList &list) const {
+    const Vec3<float> point = local.at - surface.distance * surface.normal;
+    const ContactPlane plane = plane_at(local, point, surface.normal, surface.distance);
     if (!(plane.gap < reach) && !even_if_out_of_reach) return false;
-    list.insert(plane, index);
+    list.insert(plane, local.collider);
     return true;
   }
 
   // The further walls of a solid that is not convex: one stands where a step to the side leads nearer to the surface than the nearest point is.
-  LOAM_FN void find_walls(int index, Vec3<float> local, const Surface &nearest, Vec3<float> shift, PlaneList &list) const {
+  LOAM_FN void find_walls(const Local &local, const Surface &nearest, PlaneList &list) const {
+    const Shape &shape = colliders[local.collider].shape;
     const Vec3<float> n = nearest.normal;
     const Vec3<float> across =
         absolute(n.x) < 0.7f ? Vec3<float>{0.0f, n.z, 0.0f - n.y} : Vec3<float>{0.0f - n.z, 0.0f, n.x};
@@ -166,23 +186,23 @@ private:
     for (int k = 0; k < 4; ++k) {
       float step = (k & 1) != 0 ? stand_off : 0.0f - stand_off;
       const Vec3<float> side = k < 2 ? u : v;
-      Surface wall = surface_of(colliders[index].shape, local + step * side, stand_off);
+      Surface wall = surface_of(shape, local.at + step * side, stand_off);
       if (!(wall.distance < nearest.distance - 0.3f * stand_off)) continue;
       if (wall.distance < 0.0f) { // deep in a wall that may be thin: not so far
         step = 0.5f * step;
-        wall = surface_of(colliders[index].shape, local + step * side, stand_off);
+        wall = surface_of(shape, local.at + step * side, stand_off);
       }
       if (dot(wall.normal, n) > 0.9f) continue;
       wall.distance = wall.distance - step * dot(wall.normal, side);
-      (void)insert_solid(index, local, wall, shift, false, list);
+      (void)insert_solid(local, wall, false, list);
     }
   }
 
-  LOAM_FN void find_mesh(int index, Vec3<float> x, float expected, PlaneList &list, float &clearance, float &free) const {
+  LOAM_FN void find_mesh(int index, int particle, Vec3<float> x, PlaneList &list, float &clearance, float &free) const {
     const ColliderView &collider = colliders[index];
-    const Vec3<float> local = to_local(collider.start, x);
-    const Vec3<float> shift = carried(collider, local);
-    const float near = stand_off + expected + length(shift), far = stand_off + reach + length(shift);
+    const Local local = local_of(index, particle, x);
+    const float moved = length(local.shift);
+    const float near = stand_off + expected_reach(particle) + moved, far = stand_off + reach + moved;
     const float near_squared = near * near;
 
     ClosestPoint<float> nearest = {{0.0f, 0.0f, 0.0f}, far * far, -1};
@@ -192,17 +212,17 @@ private:
     float radius_squared = far * far; // shrinks to the nearest point so far, but not below `near`
     float out_of_reach_squared = 1e30f;
     const MeshShape &mesh = collider.shape.mesh;
-    BallQuery query(mesh.nodes, local, free_distances.look_squared());
+    BallQuery query(mesh.nodes, local.at, free_distances.look_squared());
     for (int i = query.next(radius_squared); i >= 0; i = query.next(radius_squared)) {
       const TrianglePacket &packet = mesh.packets[i];
-      const PacketPoints points = closest_points(packet, local);
+      const PacketPoints points = closest_points(packet, local.at);
       const int count = static_cast<int>(packet.count);
       for (int k = 0; k < count; ++k) {
         out_of_reach_squared = minimum(out_of_reach_squared, points.distance_squared[k]);
         if (!(points.distance_squared[k] < radius_squared)) continue;
         const ClosestPoint<float> closest = points.at(k);
         const bool listed =
-            closest.distance_squared < near_squared && is_minimum(mesh, static_cast<int>(packet.first) + k, closest, local);
+            closest.distance_squared < near_squared && is_minimum(mesh, static_cast<int>(packet.first) + k, closest, local.at);
         if (closest.distance_squared < nearest.distance_squared) {
           nearest = closest;
           nearest_packet = &packet;
@@ -211,16 +231,16 @@ private:
           radius_squared = maximum(near_squared, closest.distance_squared);
           query.open_squared = 0.0f; // how much farther the next surface is does not matter any more
         }
-        if (listed) add(index, packet, k, closest, local, shift, false, list);
+        if (listed) add(local, packet, k, closest, false, list);
       }
     }
     free = minimum(free, square_root(minimum(out_of_reach_squared, query.unvisited_squared)) -
-                             FreeDistances::rounding(collider, x, local));
+                             FreeDistances::rounding(collider, x, local.at));
     if (nearest.feature < 0) return;
-    clearance = minimum(clearance, square_root(nearest.distance_squared) - length(shift));
+    clearance = minimum(clearance, square_root(nearest.distance_squared) - moved);
     // The nearest point is a minimum whatever rounding made of its feature. And there must be a contact for the sweep to look at, if only of a wall that
     // recedes: a fast mesh may come from where it has no minimum.
-    if (!nearest_is_listed || list.count == 0) add(index, *nearest_packet, nearest_lane, nearest, local, shift, true, list);
+    if (!nearest_is_listed || list.count == 0) add(local, *nearest_packet, nearest_lane, nearest, true, list);
   }
 
   LOAM_FN static bool is_minimum(const MeshShape &mesh, int triangle, const ClosestPoint<float> &closest,
@@ -237,19 +257,18 @@ private:
     return true;
   }
 
-  LOAM_FN void add(int index, const TrianglePacket &packet, int lane, const ClosestPoint<float> &closest, Vec3<float> local,
-                   Vec3<float> shift, bool even_if_out_of_reach, PlaneList &list) const {
-    const ColliderView &collider = colliders[index];
+  LOAM_FN void add(const Local &local, const TrianglePacket &packet, int lane, const ClosestPoint<float> &closest,
+                   bool even_if_out_of_reach, PlaneList &list) const {
     const float distance = square_root(closest.distance_squared);
     Vec3<float> normal;
     if (distance > 0.05f * stand_off) {
       normal = (-1.0f / distance) * closest.point;
     } else { // too near for a direction: the triangle's own, on the particle's side; in front if it lies in the surface
       const Vec3<float> own = lane_of(packet.normal, lane);
-      normal = dot(own, local - lane_of(packet.a, lane)) < 0.0f ? -1.0f * own : own;
+      normal = dot(own, local.at - lane_of(packet.a, lane)) < 0.0f ? -1.0f * own : own;
     }
-    const ContactPlane plane = plane_at(collider, local + closest.point, normal, distance, shift);
-    if (plane.gap < reach || even_if_out_of_reach) list.insert(plane, index);
+    const ContactPlane plane = plane_at(local, local.at + closest.point, normal, distance);
+    if (plane.gap < reach || even_if_out_of_reach) list.insert(plane, local.collider);
   }
 };
 

@@ -1,7 +1,8 @@
 // In every iteration: a particle's velocity made to agree with its contact planes, with Coulomb friction.
 //
 // Both velocity changes of a plane are accumulated over the iterations and it is the sums that are clipped (Guendelman et al. 2003; Catto
-// 2005): a contact takes back what it gave too much, and friction is bounded by the whole normal impulse of the substep.
+// 2005): a contact takes back what it gave too much, and friction is bounded by the whole normal impulse of the substep. A sticky surface also pulls, up to its hold,
+// and rubs as if it were pressed on by that much more.
 #pragma once
 
 #include "kernels/contact/collider_view.h"
@@ -31,7 +32,7 @@ protected:
     for (int i = contact.plane_count - 1; i >= 0; --i) {
       const ContactPlane &plane = contact.planes[i];
       const float missing = 0.0f - (dot(plane.normal, v) + plane.gap / substep);
-      const float normal_change = maximum(0.0f, contact.normal_change[i] + missing);
+      const float normal_change = maximum(0.0f - plane.hold, contact.normal_change[i] + missing);
       v = v + (normal_change - contact.normal_change[i]) * plane.normal;
       contact.normal_change[i] = normal_change;
 
@@ -39,7 +40,7 @@ protected:
       const Vec3<float> tangential = slip - dot(plane.normal, slip) * plane.normal;
       Vec3<float> friction_change = contact.friction_change[i] - tangential;
       const float size = length(friction_change);
-      const float limit = plane.friction * normal_change;
+      const float limit = plane.friction * (normal_change + plane.hold);
       if (size > limit) friction_change = (limit / size) * friction_change;
       v = v + (friction_change - contact.friction_change[i]);
       contact.friction_change[i] = friction_change;
