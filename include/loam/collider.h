@@ -48,7 +48,7 @@ typedef struct loam_collider_def {
   uint32_t kind;     /* LOAM_COLLIDER_*; default PLANE */
   float position[3]; /* where the collider's origin is, metres; default 0 */
   float rotation[4]; /* unit quaternion x, y, z, w; default identity; normalised by the library */
-  float friction;    /* Coulomb coefficient, 0 to 100; default 0.6; for a material of its own see loam_collider_set_contact */
+  float friction; /* Coulomb coefficient, 0 to 100; default 0.6; for a material of its own see loam_collider_set_contact */
   uint32_t reserved; /* 0 */
   loam_mesh mesh;    /* MESH and HULL only, in the collider's own frame; copied */
 

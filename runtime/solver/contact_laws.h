@@ -31,7 +31,9 @@ public:
   }
 
   // Of a collider with all materials, by their numbers; null if its own law holds for all.
-  const ContactLaw *of(std::size_t collider) const { return rows_[collider] == none ? nullptr : table_.data() + rows_[collider]; }
+  const ContactLaw *of(std::size_t collider) const {
+    return rows_[collider] == none ? nullptr : table_.data() + rows_[collider];
+  }
   std::uint64_t bytes() const { return table_.bytes(); }
 
 private:

@@ -250,12 +250,16 @@ TEST_F(Colliders, ContactsAreChecked) {
   }
   out = good;
   for (const loam_collider_id bad : {loam_collider_id(0), loam_collider_id(material_), ~loam_collider_id(0)}) {
-    refused(LOAM_ERROR_INVALID_HANDLE, {"collider"}, [&] { return loam_collider_set_contact(world(), bad, material_, &good); });
-    refused(LOAM_ERROR_INVALID_HANDLE, {"collider"}, [&] { return loam_collider_get_contact(world(), bad, material_, &out); });
+    refused(LOAM_ERROR_INVALID_HANDLE, {"collider"},
+            [&] { return loam_collider_set_contact(world(), bad, material_, &good); });
+    refused(LOAM_ERROR_INVALID_HANDLE, {"collider"},
+            [&] { return loam_collider_get_contact(world(), bad, material_, &out); });
   }
   for (const loam_material_id bad : {loam_material_id(collider_), ~loam_material_id(0)}) {
-    refused(LOAM_ERROR_INVALID_HANDLE, {"material"}, [&] { return loam_collider_set_contact(world(), collider_, bad, &good); });
-    refused(LOAM_ERROR_INVALID_HANDLE, {"material"}, [&] { return loam_collider_get_contact(world(), collider_, bad, &out); });
+    refused(LOAM_ERROR_INVALID_HANDLE, {"material"},
+            [&] { return loam_collider_set_contact(world(), collider_, bad, &good); });
+    refused(LOAM_ERROR_INVALID_HANDLE, {"material"},
+            [&] { return loam_collider_get_contact(world(), collider_, bad, &out); });
   }
   const auto with = [&](const char *field, auto &&spoil) {
     loam_collider_contact bad = good;

@@ -244,6 +244,8 @@ loam_collider_def random_collider(Random &random, float r, ColliderArrays &array
     def.rotation[3] = 1;
   }
   def.friction = random.chance(0.2) ? 0.0f : random.log_between(0.05, 100);
+  if (random.chance(0.2)) def.restitution = random.between(0, 1);
+  if (random.chance(0.2)) def.stick = random.log_between(1, 1e9);
   if (random.chance(0.2)) return def;
   def.kind = random.from(LOAM_COLLIDER_MESH, LOAM_COLLIDER_GRID);
   if (random.chance(0.3)) def.kind = LOAM_COLLIDER_MESH;

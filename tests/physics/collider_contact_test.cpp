@@ -12,7 +12,8 @@ constexpr float spacing = 0.01f, gravity = 9.81f;
 /* A lone particle of each of two materials, a metre apart, over a collider. */
 class Pair {
 public:
-  Pair(float height, float slope, float velocity_y, const loam_collider_contact &own, const loam_collider_contact &of_second) {
+  Pair(float height, float slope, float velocity_y, const loam_collider_contact &own,
+       const loam_collider_contact &of_second) {
     scenes::Scene first;
     first.material = scenes::rubber();
     first.spacing = spacing;

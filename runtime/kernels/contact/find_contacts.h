@@ -77,8 +77,9 @@ struct FindContacts {
   int capacity;
   int *count; // zero before; counts on past the capacity, for the host to make room and run again
   FreeDistances free_distances = {nullptr, 0.0f};
-  const std::uint32_t *materials = nullptr; // of the particles; read where a collider has laws of its own for some. Null: of none
-  float rest_speed = 0.0f;                  // see ContactParticle
+  const std::uint32_t *materials =
+      nullptr;             // of the particles; read where a collider has laws of its own for some. Null: of none
+  float rest_speed = 0.0f; // see ContactParticle
 
   LOAM_FN void operator()(int particle) const {
     if (free_distances.suffices(particle)) return;
@@ -138,8 +139,9 @@ private:
     plane.normal = rotate(collider.end.rotation, normal);
     plane.gap = (missing > 0.0f ? 0.0f - recovery * missing : 0.0f - missing) - dot(plane.normal, local.shift);
     plane.surface_velocity = (1.0f / substep) * carried(collider, point);
-    const ContactLaw &law =
-        collider.of_materials == nullptr || materials == nullptr ? collider.law : collider.of_materials[materials[local.particle]];
+    const ContactLaw &law = collider.of_materials == nullptr || materials == nullptr
+                                ? collider.law
+                                : collider.of_materials[materials[local.particle]];
     const Row &row = velocities[local.particle];
     const ContactParticle matter = {xyz(row), row.w, positions[local.particle].w, substep, rest_speed};
     plane.friction = law.friction;
@@ -221,8 +223,8 @@ private:
         out_of_reach_squared = minimum(out_of_reach_squared, points.distance_squared[k]);
         if (!(points.distance_squared[k] < radius_squared)) continue;
         const ClosestPoint<float> closest = points.at(k);
-        const bool listed =
-            closest.distance_squared < near_squared && is_minimum(mesh, static_cast<int>(packet.first) + k, closest, local.at);
+        const bool listed = closest.distance_squared < near_squared &&
+                            is_minimum(mesh, static_cast<int>(packet.first) + k, closest, local.at);
         if (closest.distance_squared < nearest.distance_squared) {
           nearest = closest;
           nearest_packet = &packet;
