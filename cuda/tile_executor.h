@@ -49,6 +49,7 @@ public:
   template <class Reduction> typename Reduction::Value reduce(int count, const Reduction &reduction) {
     return machine_.reduce(count, reduction);
   }
+  void reserve_sort(std::size_t count) { machine_.reserve(count); }
   void sort(std::uint32_t *keys, std::uint32_t *values, int count, int key_bits) {
     machine_.sort(keys, values, count, key_bits);
   }

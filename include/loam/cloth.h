@@ -6,7 +6,8 @@
  *
  * Vertices keep `thickness` from colliders, with the collider's friction, and are swept against them, so that no vertex passes a surface. What lies between
  * vertices is not looked at: over a convex collider of radius R, edges of length L cut in by up to L^2 / (8 R), less the thickness.
- * Cloth does not collide with itself, with other cloth, or with particles.
+ * Particles keep half a kernel radius from the triangles, and push and rub against them both ways (what a substep cannot resolve is taken from the particle alone); edges should be no longer than a few kernel radii, and no shorter
+ * than half of one. Cloth does not collide with itself or with other cloth.
  *
  * Thread contract: as for the world.
  */
@@ -51,6 +52,7 @@ typedef struct loam_cloth_def {
   float greatest_stretch;
   float
       thickness; /* the distance that vertices keep from colliders, metres, 1e-6 to 1e3; 0 (the default): half the kernel radius */
+  float particle_friction; /* Coulomb coefficient against particles, 0 to 100; default 0.5 */
 } loam_cloth_def;
 
 /* Errors: INVALID_ARGUMENT for null or an unknown size. */

@@ -66,6 +66,8 @@ public:
     }
     return total;
   }
+  // Room for a sort of more than the particles.
+  void reserve_sort(std::size_t count) { sort_.reserve(count); }
   void sort(std::uint32_t *keys, std::uint32_t *values, int count, int key_bits) {
     sort_.sort(workers_, keys, values, count, key_bits);
   }

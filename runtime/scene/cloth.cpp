@@ -20,6 +20,7 @@ loam_cloth_def default_cloth() {
   def.bending_stiffness = 1e-5f;
   def.damping = 1e-3f;
   def.warp[0] = 1;
+  def.particle_friction = 0.5f;
   def.greatest_stretch = 0.005f;
   return def;
 }
@@ -114,6 +115,7 @@ void check_definition(const loam_cloth_def &def) {
   check_vector("warp", def.warp, 1e6);
   if (def.warp[0] == 0 && def.warp[1] == 0 && def.warp[2] == 0)
     throw Error(LOAM_ERROR_INVALID_ARGUMENT, "warp is (0, 0, 0); it must have a direction");
+  check_range("particle_friction", double(def.particle_friction), 0, 100);
   check_range("greatest_stretch", double(def.greatest_stretch), 0, 10);
   if (def.thickness != 0.0f) check_range("thickness", double(def.thickness), double(1e-6f), 1e3);
 }
@@ -125,7 +127,8 @@ SolverCloth make_cloth(const loam_cloth_def &def, const ClothMesh &mesh, float t
   const Pose pose = make_pose(def.position, def.rotation);
   SolverCloth cloth;
   cloth.material = {def.stretch_stiffness, def.shear_stiffness, def.bending_stiffness,
-                    def.damping,           def.areal_density,   def.thickness != 0.0f ? def.thickness : thickness};
+                    def.damping,           def.areal_density,   def.thickness != 0.0f ? def.thickness : thickness,
+                    def.particle_friction};
   std::vector<double> masses(mesh.vertices.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     masses[static_cast<std::size_t>(mesh.triangles[i])] += double(def.areal_density) * double(mesh.areas[i / 3]) / 3;

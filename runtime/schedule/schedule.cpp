@@ -18,12 +18,13 @@ void Schedule::compile(const SceneContents &contents) {
   gradients = add("gradients");
   forces = add("forces");
   if (contents.colliders) find_contacts = add("find contacts");
-  if (contents.cloth && contents.colliders) find_cloth_contacts = add("find cloth contacts");
+  if (contents.cloth && (contents.colliders || contents.particles)) find_cloth_contacts = add("find cloth contacts");
   if (contents.cloth) prepare_cloth = add("prepare cloth");
   for (const SceneContents::Material &material : contents.materials)
     solve.push_back(material.in_use ? add("solve " + material.name) : -1);
   if (contents.position_correction) position_correction = add("position correction");
   if (contents.cloth) solve_cloth = add("solve cloth");
+  if (contents.cloth && contents.particles) cloth_particles = add("cloth and particles");
   if (contents.colliders) contacts = add("contacts");
   if (contents.cloth && contents.colliders) cloth_contacts = add("cloth contacts");
   if (contents.velocity_smoothing) velocity_smoothing = add("velocity smoothing");

@@ -33,6 +33,7 @@ struct SceneContents {
   bool colliders = false;
   bool cloth = false;
   bool sleep = false;
+  bool particles = false;
 };
 
 class Schedule {
@@ -41,7 +42,7 @@ public:
   int sort = -1, search = -1, order = -1, gradients = -1, forces = -1, find_contacts = -1, position_correction = -1,
       contacts = -1, velocity_smoothing = -1, speed_limit = -1, final_contacts = -1, advance = -1, sleep = -1,
       statistics = -1, find_cloth_contacts = -1, prepare_cloth = -1, solve_cloth = -1, cloth_contacts = -1,
-      finish_cloth = -1;
+      cloth_particles = -1, finish_cloth = -1;
   std::vector<int> solve, strain;
 
   void compile(const SceneContents &contents);

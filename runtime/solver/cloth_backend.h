@@ -32,6 +32,7 @@ struct ClothMaterial {
   float damping;        // s
   float areal_density;  // kg/m^2
   float thickness;      // m: the distance that is kept from colliders
+  float friction;       // against particles
 };
 
 struct ClothWind {

@@ -21,6 +21,7 @@
 #include "kernels/integration/integrate.h"
 #include "schedule/schedule.h"
 #include "solver/cloth_backend.h"
+#include "solver/cloth_particles.h"
 
 namespace loam {
 
@@ -48,15 +49,21 @@ public:
     const ColliderView *colliders;
     int collider_count;
     float collider_motion; // the most that a point of any collider moves
+    ClothParticles particles;
   };
   void find_contacts(const Substep &substep);
   void prepare(const Substep &substep);
   void solve(const Substep &substep);
   void solve_contacts(const Substep &substep);
+  void solve_particle_contacts(const Substep &substep);
+  // After it a cloth's velocities stay.
   void finish(const Substep &substep, int *speed_limited);
+  void keep_particles_off(const Substep &substep);
+  void advance(const Substep &substep);
   std::uint64_t constraint_count() const { return constraints_; }
   std::uint64_t vertex_count() const { return vertices_; }
   std::uint64_t contact_count() const;
+  std::uint64_t particle_contact_count() const;
 
 private:
   template <class T> using Array = typename Executor::template Array<T>;
@@ -78,11 +85,15 @@ private:
     Array<Attachment> attachments;
     Array<Contact> contacts;
     Array<int> contact_counter;
+    ClothParticleContact<Executor> particle_contact;
     std::vector<float> inverse_masses;
     std::vector<SolverAttachment> attached;
     ClothMaterial material{};
     ClothWind wind{};
-    int vertex_count = 0, attachment_count = 0, contact_count = 0;
+    typename ClothParticleContact<Executor>::Sheet sheet() {
+      return {positions.data(), velocities.data(), triangles.data(), vertex_count, triangle_count, material.friction};
+    }
+    int vertex_count = 0, triangle_count = 0, attachment_count = 0, contact_count = 0;
     std::uint64_t constraint_count = 0; // three a triangle, one a hinge
     float reach = 0;                    // the most that a vertex moves in this substep
     bool in_use = false;
@@ -120,6 +131,7 @@ private:
             executor_.template array<Attachment>(),
             executor_.template array<Contact>(),
             executor_.template array<int>(),
+            ClothParticleContact<Executor>(executor_),
             {},
             {}};
   }
@@ -208,6 +220,7 @@ template <class Executor> int ClothSolver<Executor>::add(const SolverCloth &desc
   const std::size_t n = description.positions.size(), triangles = description.triangles.size() / 3;
   Cloth cloth = make_empty();
   cloth.vertex_count = static_cast<int>(n);
+  cloth.triangle_count = static_cast<int>(triangles);
   cloth.material = description.material;
   // Spare vertices, one a lane, stay at the origin: their inverse mass is 0.
   const std::size_t rows = n + static_cast<std::size_t>(executor_.constraint_width());
@@ -299,7 +312,7 @@ template <class Executor> std::uint64_t ClothSolver<Executor>::bytes() const {
     sum += c.positions.bytes() + c.velocities.bytes() + c.normals.bytes() + c.triangles.bytes() + c.starts.bytes() +
            c.around.bytes() + c.membrane.indices.bytes() + c.membrane.fields.bytes() + c.hinges.indices.bytes() +
            c.hinges.fields.bytes() + c.threads.indices.bytes() + c.threads.fields.bytes() + c.thread_starts.bytes() +
-           c.attachments.bytes() + c.contacts.bytes() + c.contact_counter.bytes();
+           c.attachments.bytes() + c.contacts.bytes() + c.contact_counter.bytes() + c.particle_contact.bytes();
   return sum;
 }
 
@@ -321,7 +334,9 @@ template <class Executor> void ClothSolver<Executor>::find_contacts(const Subste
     // Twice as far as the fastest vertex goes, and as a fall from rest goes in a few substeps; nothing of the sort of a grid bounds it.
     cloth.reach = cloth.material.thickness + s.collider_motion +
                   s.seconds * (4.0f * greatest + 4.0f * s.seconds * length(s.gravity) + 2.0f * length(cloth.wind.velocity));
+    if (s.particles.count > 0) cloth.reach += s.particles.radius; // what hits it may be that fast
     cloth.contact_count = 0;
+    if (s.particles.count > 0) cloth.particle_contact.find(executor_, cloth.sheet(), s.particles, s.seconds);
     if (s.collider_count == 0) return;
     for (int attempt = 0; attempt < 2; ++attempt) {
       executor_.set(cloth.contact_counter.data(), 1, 0);
@@ -375,18 +390,43 @@ template <class Executor> void ClothSolver<Executor>::solve_contacts(const Subst
   });
 }
 
+template <class Executor> void ClothSolver<Executor>::solve_particle_contacts(const Substep &s) {
+  for_each_cloth([&](Cloth &cloth) { cloth.particle_contact.solve(executor_, cloth.sheet(), s.particles, s.seconds); });
+}
+
 template <class Executor> void ClothSolver<Executor>::finish(const Substep &s, int *speed_limited) {
   for_each_cloth([&](Cloth &cloth) {
     Row *velocities = cloth.velocities.data();
     const float fastest = cloth.reach / s.seconds;
+    if (s.particles.count > 0) // once more: smoothing and the speed limit have changed the particles
+      for (int pass = 0; pass < 2; ++pass) cloth.particle_contact.solve(executor_, cloth.sheet(), s.particles, s.seconds);
     executor_.for_each(cloth.vertex_count, LimitSpeed{velocities, fastest, speed_limited});
+    if (s.particles.count > 0)
+      for (int pass = 0; pass < 8; ++pass)
+        cloth.particle_contact.keep_off(executor_, cloth.sheet(), s.particles, s.seconds, true);
     executor_.for_each(cloth.contact_count,
                        SolveContactsWithinLimit{{cloth.contacts.data(), velocities, s.seconds}, fastest, speed_limited});
     executor_.for_each(cloth.contact_count,
                        SweepContacts{cloth.contacts.data(), cloth.positions.data(), velocities, s.colliders,
                                      s.collider_count, s.seconds, 0.05f * cloth.material.thickness});
-    executor_.for_each(cloth.vertex_count, AdvanceVertices{cloth.positions.data(), velocities, s.seconds});
   });
+}
+
+template <class Executor> void ClothSolver<Executor>::keep_particles_off(const Substep &s) {
+  for_each_cloth(
+      [&](Cloth &cloth) { cloth.particle_contact.keep_off(executor_, cloth.sheet(), s.particles, s.seconds, false); });
+}
+
+template <class Executor> void ClothSolver<Executor>::advance(const Substep &s) {
+  for_each_cloth([&](Cloth &cloth) {
+    executor_.for_each(cloth.vertex_count, AdvanceVertices{cloth.positions.data(), cloth.velocities.data(), s.seconds});
+  });
+}
+
+template <class Executor> std::uint64_t ClothSolver<Executor>::particle_contact_count() const {
+  std::uint64_t sum = 0;
+  for (const Cloth &cloth : cloths_) sum += static_cast<std::uint64_t>(cloth.particle_contact.count());
+  return sum;
 }
 
 template <class Executor> std::uint64_t ClothSolver<Executor>::contact_count() const {

@@ -45,6 +45,8 @@ template <class Executor> void Solver<Executor>::compile_schedule(bool colliders
   contents.colliders = colliders;
   contents.cloth = cloth;
   contents.sleep = settings_.sleep_speed > 0.0f;
+  contents.particles =
+      std::any_of(materials_.begin(), materials_.end(), [](const SolverMaterial &material) { return material.in_use; });
   schedule_.compile(contents);
   schedule_is_current_ = true;
   schedule_has_colliders_ = colliders;

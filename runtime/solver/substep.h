@@ -45,10 +45,17 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
   }
   ex.for_each(count_, LimitSpeed{now_.velocities.data(), settings_.kernel_radius / h_, counters_.data()});
   lap(schedule_.speed_limit, particles());
-  if (contact_count_ > 0) {
+  if (!cloth_.empty()) {
+    cloth_.finish(cloth_substep(input), counters_.data());
+    lap(schedule_.finish_cloth, cloth_.vertex_count());
+  }
+  if (contact_count_ > 0)
     ex.for_each(contact_count_, SolveContactsWithinLimit{{contacts_.data(), now_.velocities.data(), h_},
                                                          settings_.kernel_radius / h_,
                                                          counters_.data()});
+  // After the contacts, which take back what they gave against what is changed here; before the sweep, for colliders let nothing pass.
+  if (schedule_.cloth_particles >= 0) cloth_.keep_particles_off(cloth_substep(input));
+  if (contact_count_ > 0) {
     const float margin = 0.05f * 0.5f * settings_.kernel_radius;
     const int colliders = static_cast<int>(input.colliders.size());
     ex.for_each(contact_count_, SweepContacts{contacts_.data(), now_.positions.data(), now_.velocities.data(),
@@ -91,7 +98,7 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
               Advance{now_.positions.data(), now_.velocities.data(), now_.log_volumes.data(), now_.rest_volumes.data(), h_});
   lap(schedule_.advance, particles());
   if (!cloth_.empty()) {
-    cloth_.finish(cloth_substep(input), counters_.data());
+    cloth_.advance(cloth_substep(input));
     lap(schedule_.finish_cloth, cloth_.vertex_count());
   }
   if (schedule_.sleep >= 0) fall_asleep();
@@ -103,7 +110,9 @@ template <class Executor> typename Solver<Executor>::ClothSubstep Solver<Executo
           input.gravity,
           collider_views_.data(),
           static_cast<int>(views_.size()),
-          collider_motion_.greatest()};
+          collider_motion_.greatest(),
+          {now_.positions.data(), now_.velocities.data(), count_, static_cast<int>(settings_.particle_capacity),
+           settings_.kernel_radius}};
 }
 
 // The nonlinear iterations: inelastic constraints, position correction, cloth, contacts.
@@ -121,6 +130,10 @@ template <class Executor> void Solver<Executor>::iterate(const StepInput &input)
     if (!cloth_.empty()) {
       cloth_.solve(cloth_substep(input));
       lap(schedule_.solve_cloth, cloth_.constraint_count());
+      if (schedule_.cloth_particles >= 0) {
+        cloth_.solve_particle_contacts(cloth_substep(input));
+        lap(schedule_.cloth_particles, cloth_.particle_contact_count());
+      }
     }
     if (contact_count_ > 0) {
       executor_.for_each(contact_count_, SolveContacts{contacts_.data(), now_.velocities.data(), h_});

@@ -56,6 +56,7 @@ TEST_F(ClothAbi, DefinitionsNameTheFieldThatIsWrong) {
                         {"bending_stiffness", &loam_cloth_def::bending_stiffness, {-1, 2e6f, nan, infinity}},
                         {"damping", &loam_cloth_def::damping, {-1, 11, nan, infinity}},
                         {"greatest_stretch", &loam_cloth_def::greatest_stretch, {-1, 11, nan, infinity}},
+                        {"particle_friction", &loam_cloth_def::particle_friction, {-1, 101, nan, infinity}},
                         {"thickness", &loam_cloth_def::thickness, {-1, 1e-7f, 1e4f, nan, infinity}}};
   for (const Case &c : cases)
     for (const float value : c.bad) {
@@ -228,7 +229,7 @@ TEST_F(ClothAbi, AWorldWithoutClothHasNoneOfItsStages) {
     return count;
   };
   world_.step(1e-3f);
-  EXPECT_EQ(cloth_stages(), 5u);
+  EXPECT_EQ(cloth_stages(), 6u);
   ASSERT_EQ(loam_cloth_destroy(world(), cloth_), LOAM_OK);
   world_.step(1e-3f);
   EXPECT_EQ(cloth_stages(), 0u);

@@ -11,6 +11,7 @@ std::uint64_t hash_of(std::uint32_t threads, std::uint32_t instruction_set) {
   loam_world_def def = cloths::world_def(5, 4);
   def.thread_count = threads;
   def.instruction_set = instruction_set;
+  def.particle_capacity = 216;
   loam_world *made = nullptr;
   if (loam_world_create(&def, &made) != LOAM_OK) return 0;
   loam_world_destroy(made);
@@ -25,6 +26,7 @@ std::uint64_t hash_of(std::uint32_t threads, std::uint32_t instruction_set) {
   const cloths::Cloth cloth(world.get(), cloth_def);
   cloth.attach({grid.at(0, 0)}, {}, 0.01f);
   cloth.set_wind(3, 0, 1, 1, 0.5f);
+  world.add(scenes::drop_block(scenes::sand(), 6, 0.1f));
   for (int frame = 0; frame < 20; ++frame) world.step(1.0f / 60);
   EXPECT_TRUE(cloth.vertices().finite());
   return world.state_hash();
