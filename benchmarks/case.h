@@ -61,6 +61,7 @@ private:
 
 void run_library(benchmark::State &state, const Case &measured);
 void run_reference(benchmark::State &state, const Case &measured);
+void run_snapshot(benchmark::State &state, const Case &measured, std::uint32_t multiplier, bool restoring);
 
 /* Whether the library has this backend and instruction set here. */
 bool is_available(const Case &measured);

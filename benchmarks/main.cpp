@@ -23,6 +23,26 @@ void add_library(const Case &measured) {
   if (is_available(measured)) add("library", measured, run_library);
 }
 
+/* In both forms: rubber's drifts are part of the state in that of the tensor. */
+void add_snapshots(const std::string &name, const loam_material_def &material) {
+  const std::pair<const char *, std::uint32_t> multipliers[] = {{"scalar", LOAM_MULTIPLIER_SCALAR},
+                                                                {"tensor", LOAM_MULTIPLIER_PROJECTED_TENSOR}};
+  for (const auto &[form, multiplier] : multipliers)
+    for (const bool restoring : {false, true}) {
+      Case measured;
+      measured.material = material;
+      benchmark::RegisterBenchmark(
+          ("snapshot/" + name + "/" + form + (restoring ? "/restore/" : "/save/") + std::to_string(measured.particles))
+              .c_str(),
+          [measured, multiplier = multiplier, restoring](benchmark::State &state) {
+            run_snapshot(state, measured, multiplier, restoring);
+          })
+          ->UseManualTime()
+          ->Unit(benchmark::kMillisecond)
+          ->Iterations(20);
+    }
+}
+
 void add_cases() {
   constexpr std::size_t small = 8192, medium = 65536, large = 262144;
 
@@ -69,6 +89,9 @@ void add_cases() {
     other.material = material;
     add_library(other);
   }
+
+  add_snapshots("sand", scenes::sand());
+  add_snapshots("rubber", scenes::rubber());
 
   const std::pair<const char *, std::uint32_t> solvers[] = {{"gauss-seidel", LOAM_SOLVER_GAUSS_SEIDEL},
                                                             {"jacobi", LOAM_SOLVER_JACOBI}};

@@ -37,7 +37,11 @@ enum {
   LOAM_ERROR_IN_USE = 6,              /* the object is still referred to, or the buffers are mapped */
   LOAM_ERROR_INVALID_MESH = 7,        /* the mesh cannot serve this purpose; the text names the edge or triangle */
   LOAM_ERROR_DEVICE = 8,              /* the accelerator reported a failure; the world can only be destroyed */
-  LOAM_ERROR_INTERNAL = 9             /* a fault of the library; please report the text */
+  LOAM_ERROR_INTERNAL = 9,            /* a fault of the library; please report the text */
+  LOAM_ERROR_INVALID_SNAPSHOT = 10,   /* not a snapshot, damaged, cut short, or of another version; the text says which */
+  LOAM_ERROR_SNAPSHOT_MISMATCH =
+      11,              /* a snapshot of a world that was described otherwise; the text names the field that differs */
+  LOAM_ERROR_BUSY = 12 /* an asynchronous step was begun and not yet waited for */
 };
 
 /* A short constant name such as "LOAM_ERROR_CAPACITY"; "LOAM_ERROR_UNKNOWN" for a value that is not a status.
@@ -58,7 +62,7 @@ typedef uint64_t loam_collider_id;
 /* ----------------------------------------------------------------------------------------------------- hooks --- */
 
 /* Where the library takes host memory from. All null: the C++ runtime's aligned allocation. Either both functions are given or
- * neither. Calls come from the thread that calls Loam. `alignment` is a power of two, at most 4096. Return null to refuse:
+ * neither. Calls come from the thread that calls Loam, or from the one that runs an asynchronous step; for one world, one at a time. `alignment` is a power of two, at most 4096. Return null to refuse:
  * the call in progress then fails with LOAM_ERROR_OUT_OF_MEMORY and leaves the world as it was. Bookkeeping of a few kilobytes
  * (names, error texts, id tables) does not pass through here. */
 typedef struct loam_allocator {
@@ -71,7 +75,8 @@ typedef struct loam_allocator {
  *
  * `enqueue` schedules `task(argument)` once, on any thread, at any later time, and returns a token for `finish`; it may also
  * run the task at once. `finish` returns when that task has returned (running it there and then is fine). During a step the
- * library enqueues at most thread_count - 1 tasks, works itself on the calling thread, and finishes them before it returns. The
+ * library enqueues at most thread_count - 1 tasks, works itself on the calling thread (that of the asynchronous step, if it is one), and finishes them before it
+ * returns. The
  * step also completes when no task is ever started before `finish`: late or missing help costs time, never correctness, and
  * never changes a result. */
 typedef struct loam_job_system {

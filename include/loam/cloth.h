@@ -9,7 +9,7 @@
  * Particles keep half a kernel radius from the triangles, and push and rub against them both ways (what a substep cannot resolve is taken from the particle alone); edges should be no longer than a few kernel radii, and no shorter
  * than half of one. Cloth does not collide with itself or with other cloth.
  *
- * Thread contract: as for the world.
+ * Thread contract: as for the world; during an asynchronous step every function here that takes a world answers LOAM_ERROR_BUSY.
  */
 #ifndef LOAM_CLOTH_H
 #define LOAM_CLOTH_H

@@ -1,6 +1,6 @@
 /* Colliders: what matter runs into. They are moved by the host; matter does not move them.
  *
- * Thread contract: as for the world.
+ * Thread contract: as for the world; during an asynchronous step every function here that takes a world answers LOAM_ERROR_BUSY.
  */
 #ifndef LOAM_COLLIDER_H
 #define LOAM_COLLIDER_H

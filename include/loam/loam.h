@@ -9,6 +9,7 @@
  *   collider.h   planes and triangle meshes that matter runs into
  *   cloth.h      sheets that hang, drape and blow in the wind
  *   particles.h  fill volumes with particles, read the particles back
+ *   snapshot.h   save the state of a world, and go back to it
  *
  * Units are SI throughout: metres, kilograms, seconds, pascals, radians. Coordinates are right-handed; which axis
  * is up is the host's choice, made through gravity. See samples/hello_sand.c for a complete host in under 100 lines.
@@ -22,6 +23,7 @@
 #include <loam/material.h>
 #include <loam/material_design.h>
 #include <loam/particles.h>
+#include <loam/snapshot.h>
 #include <loam/world.h>
 
 #endif

@@ -3,7 +3,7 @@
  * All laws share the Saint Venant-Kirchhoff energy in Hencky (logarithmic) strain e: psi = mu |e|^2 + lambda/2 tr(e)^2, with the
  * Lame parameters mu and lambda from Young's modulus and Poisson's ratio. They differ in their yield surface.
  *
- * Thread contract: as for the world.
+ * Thread contract: as for the world; during an asynchronous step every function here that takes a world answers LOAM_ERROR_BUSY.
  */
 #ifndef LOAM_MATERIAL_H
 #define LOAM_MATERIAL_H

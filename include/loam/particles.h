@@ -1,6 +1,6 @@
 /* Particles: filling volumes with matter, and reading the matter back.
  *
- * Thread contract: as for the world.
+ * Thread contract: as for the world; during an asynchronous step every function here that takes a world answers LOAM_ERROR_BUSY.
  */
 #ifndef LOAM_PARTICLES_H
 #define LOAM_PARTICLES_H
@@ -131,6 +131,15 @@ LOAM_API loam_status loam_particles_map(loam_world *world, loam_particle_view *v
 
 /* Ends the mapping. Errors: INVALID_ARGUMENT if nothing is mapped. */
 LOAM_API loam_status loam_particles_unmap(loam_world *world);
+
+/* Copies the particles as they are now to buffers of their own on the same processor, and gives the pointers to those: a frame to be read, by any thread, while
+ * the next step runs, asynchronously or not. It stays as it is until the next loam_particles_keep, loam_particles_drop or loam_world_destroy. Memory for it, of
+ * particle_capacity particles, is taken by the first call; worlds that keep no frame have none.
+ * Errors: INVALID_ARGUMENT; OUT_OF_MEMORY; an earlier frame is then as it was. */
+LOAM_API loam_status loam_particles_keep(loam_world *world, loam_particle_view *view);
+
+/* Gives back the memory of the kept frame. Errors: INVALID_ARGUMENT if there is none. */
+LOAM_API loam_status loam_particles_drop(loam_world *world);
 
 #ifdef __cplusplus
 }

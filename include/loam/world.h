@@ -2,6 +2,10 @@
  *
  * Thread contract of the whole header: a world is used by one thread at a time; two worlds may be used by two threads
  * at once. The library has no global state beside the last error text of each thread.
+ *
+ * During an asynchronous step, from loam_world_step_async to loam_world_wait, every function of this and the other headers that takes the world answers
+ * LOAM_ERROR_BUSY and does nothing, but for four: loam_world_wait, loam_world_is_stepping, loam_world_get_backend, and loam_world_destroy, which waits.
+ * Functions without a world may be called at any time.
  */
 #ifndef LOAM_WORLD_H
 #define LOAM_WORLD_H
@@ -134,6 +138,30 @@ LOAM_API loam_status loam_world_destroy(loam_world *world);
  * room. On CAPACITY or OUT_OF_MEMORY the world stands at the end of the last whole substep (*statistics.substeps_done of them). */
 LOAM_API loam_status loam_world_step(loam_world *world, float seconds);
 
+/* Begins a step like loam_world_step and returns at once; the step runs on a thread that the world starts with its first asynchronous step and keeps until it
+ * is destroyed (so does, with it, what the hooks for memory and jobs are called from). Its result has the same bits. What was to be read of the last frame
+ * meanwhile is to be kept before: loam_particles_keep.
+ * Errors: those of loam_world_step for its arguments and for mapped buffers; OUT_OF_MEMORY without a thread; BUSY. Then no step was begun. */
+LOAM_API loam_status loam_world_step_async(loam_world *world, float seconds);
+
+/* Waits until the asynchronous step is over, and answers with what loam_world_step would have, its error text and its line in the log included. Any thread.
+ * Errors: those of loam_world_step; INVALID_ARGUMENT if no step was begun. */
+LOAM_API loam_status loam_world_wait(loam_world *world);
+
+/* *running receives 1 while an asynchronous step is under way; 0 when loam_world_wait would return at once, or when none was begun.
+ * Errors: INVALID_ARGUMENT for null. */
+LOAM_API loam_status loam_world_is_stepping(const loam_world *world, uint32_t *running);
+
+/* Makes the point `offset` (metres, each component at most 1e6 kernel radii in size) the origin: takes it away from the positions of all particles, of cloth and
+ * what it is attached to in space, and of colliders with where they move to. For worlds in which the matter goes far: single precision has its digits near the
+ * origin.
+ *
+ * A coordinate x moves exactly where the digits of x - offset fit: always when offset is a whole multiple of a power of two P (such as 1024 m), |x| is at most
+ * 2^24 P, and |x - offset| is at most |x|. So shifting towards the matter loses nothing, and distances stay what they were to the last bit. Away from it,
+ * coordinates are rounded to their new last place. Later steps are the same motion, in other bits: cells lie elsewhere.
+ * Errors: INVALID_ARGUMENT; IN_USE while buffers are mapped. A kept frame stays as it is. */
+LOAM_API loam_status loam_world_shift_origin(loam_world *world, const float offset[3]);
+
 /* Gravity in m/s^2 from the next step on. Errors: INVALID_ARGUMENT if a component is not finite or beyond 1e6. */
 LOAM_API loam_status loam_world_set_gravity(loam_world *world, const float gravity[3]);
 
@@ -147,8 +175,10 @@ LOAM_API loam_status loam_world_wake(loam_world *world);
  * pointer may be null. */
 LOAM_API loam_status loam_world_get_backend(const loam_world *world, uint32_t *backend, uint32_t *instruction_set);
 
-/* A 64-bit hash of everything that decides the future of the particles. Same build, backend and inputs: same hash, for any
- * number of threads and any instruction set. Two worlds with equal hashes step alike. */
+/* A 64-bit hash of the state of all matter: of each particle its place in the solver's order, position, velocity, strain, volumes, mass, what its law
+ * remembers, id and material; of each vertex of cloth its position, velocity and mass. It does not cover what the host says: definitions, gravity,
+ * poses of colliders, wind, attachments. Same build, backend and inputs: same hash, for any number of threads and any instruction set; and two
+ * worlds that were told the same and have equal hashes step alike. */
 LOAM_API loam_status loam_world_state_hash(const loam_world *world, uint64_t *hash);
 
 /* ------------------------------------------------------------------------------------------------ statistics --- */

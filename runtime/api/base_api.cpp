@@ -34,6 +34,12 @@ const char *loam_status_name(loam_status status) {
     return "LOAM_ERROR_DEVICE";
   case LOAM_ERROR_INTERNAL:
     return "LOAM_ERROR_INTERNAL";
+  case LOAM_ERROR_INVALID_SNAPSHOT:
+    return "LOAM_ERROR_INVALID_SNAPSHOT";
+  case LOAM_ERROR_SNAPSHOT_MISMATCH:
+    return "LOAM_ERROR_SNAPSHOT_MISMATCH";
+  case LOAM_ERROR_BUSY:
+    return "LOAM_ERROR_BUSY";
   default:
     return "LOAM_ERROR_UNKNOWN";
   }

@@ -15,10 +15,15 @@ namespace loam {
 // The calling thread's last error text.
 void set_last_error(const char *text) noexcept;
 
-template <class F> loam_status guarded(const loam_world *world, F &&function) noexcept {
+// Whether a call may come during an asynchronous step.
+enum class Meanwhile { busy, allowed };
+
+template <class F>
+loam_status guarded(const loam_world *world, F &&function, Meanwhile meanwhile = Meanwhile::busy) noexcept {
   set_last_error("");
   loam_status status = LOAM_OK;
   try {
+    if (meanwhile == Meanwhile::busy && world != nullptr) world->check_not_stepping();
     function();
     return LOAM_OK;
   } catch (const Error &error) {

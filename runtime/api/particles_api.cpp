@@ -82,6 +82,25 @@ loam_status loam_particles_map(loam_world *world, loam_particle_view *view) {
   });
 }
 
+loam_status loam_particles_keep(loam_world *world, loam_particle_view *view) {
+  return guarded(world, [&] {
+    check_pointer(world, "world");
+    check_pointer(view, "view");
+    loam_particle_view values = {}, probe = {};
+    const uint32_t size = view->struct_size;
+    write_definition(&probe, "view", size, values); // checked first, so that a failure leaves an earlier frame
+    world->backend().keep(values);
+    write_definition(view, "view", size, values);
+  });
+}
+
+loam_status loam_particles_drop(loam_world *world) {
+  return guarded(world, [&] {
+    check_pointer(world, "world");
+    if (!world->backend().drop()) throw Error(LOAM_ERROR_INVALID_ARGUMENT, "no frame is kept");
+  });
+}
+
 loam_status loam_particles_unmap(loam_world *world) {
   return guarded(world, [&] {
     check_pointer(world, "world");

@@ -27,6 +27,42 @@ loam_status loam_world_step(loam_world *world, float seconds) {
   });
 }
 
+loam_status loam_world_step_async(loam_world *world, float seconds) {
+  return guarded(world, [&] {
+    check_pointer(world, "world");
+    world->begin_step(seconds);
+  });
+}
+
+loam_status loam_world_wait(loam_world *world) {
+  return guarded(
+      world,
+      [&] {
+        check_pointer(world, "world");
+        world->wait();
+      },
+      Meanwhile::allowed);
+}
+
+loam_status loam_world_is_stepping(const loam_world *world, uint32_t *running) {
+  return guarded(
+      world,
+      [&] {
+        check_pointer(world, "world");
+        check_pointer(running, "running");
+        *running = world->is_stepping() ? 1 : 0;
+      },
+      Meanwhile::allowed);
+}
+
+loam_status loam_world_shift_origin(loam_world *world, const float offset[3]) {
+  return guarded(world, [&] {
+    check_pointer(world, "world");
+    check_pointer(offset, "offset");
+    world->shift_origin(offset);
+  });
+}
+
 loam_status loam_world_set_gravity(loam_world *world, const float gravity[3]) {
   return guarded(world, [&] {
     check_pointer(world, "world");
@@ -50,11 +86,14 @@ loam_status loam_world_wake(loam_world *world) {
 }
 
 loam_status loam_world_get_backend(const loam_world *world, uint32_t *backend, uint32_t *instruction_set) {
-  return guarded(world, [&] {
-    check_pointer(world, "world");
-    if (backend != nullptr) *backend = world->backend_kind();
-    if (instruction_set != nullptr) *instruction_set = world->instruction_set();
-  });
+  return guarded(
+      world,
+      [&] {
+        check_pointer(world, "world");
+        if (backend != nullptr) *backend = world->backend_kind();
+        if (instruction_set != nullptr) *instruction_set = world->instruction_set();
+      },
+      Meanwhile::allowed);
 }
 
 loam_status loam_world_state_hash(const loam_world *world, uint64_t *hash) {

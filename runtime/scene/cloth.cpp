@@ -5,6 +5,7 @@
 
 #include "scene/checks.h"
 #include "scene/cloth_threads.h"
+#include "scene/fingerprint.h"
 #include "scene/graph_colouring.h"
 #include "scene/pose.h"
 
@@ -146,6 +147,13 @@ SolverCloth make_cloth(const loam_cloth_def &def, const ClothMesh &mesh, float t
   return cloth;
 }
 
+void check_wind(const ClothWind &wind) {
+  const float velocity[3] = {wind.velocity.x, wind.velocity.y, wind.velocity.z};
+  check_vector("velocity", velocity, 1e4);
+  check_range("drag", double(wind.drag), 0, 100);
+  check_range("lift", double(wind.lift), 0, 100);
+}
+
 // ------------------------------------------------------------------------------------------------- the world's cloths ---
 
 ClothScene::Cloth &ClothScene::changeable(loam_cloth_id id) {
@@ -159,6 +167,8 @@ loam_cloth_id ClothScene::create(ClothBackend &backend, const loam_cloth_def &de
   Cloth cloth;
   cloth.mesh = std::make_shared<ClothMesh>(make_cloth_mesh(def.mesh));
   const SolverCloth made = make_cloth(def, *cloth.mesh, default_thickness_);
+  cloth.description = {def, mesh_fingerprint(def.mesh), def.mesh.vertex_count};
+  cloth.description.def.mesh = {};
   cloth.backend = backend.add(made);
   try {
     send(backend, cloth);
@@ -178,7 +188,7 @@ void ClothScene::destroy(ClothBackend &backend, loam_cloth_id id) {
 }
 
 void ClothScene::send(ClothBackend &backend, const Cloth &cloth) const {
-  std::vector<SolverAttachment> attachments = cloth.attachments;
+  std::vector<SolverAttachment> attachments = cloth.changes.attachments;
   for (SolverAttachment &a : attachments) {
     if (a.collider < 0) continue;
     const auto slot = static_cast<std::size_t>(a.collider);
@@ -196,10 +206,10 @@ void ClothScene::attach(ClothBackend &backend, loam_cloth_id id, const loam_clot
   check_pointer(def.vertices, "vertices");
   if (def.compliance != 0.0f) check_range("compliance", double(def.compliance), double(1e-9f), 1e9);
   std::vector<bool> held(vertex_count);
-  for (const SolverAttachment &a : cloth.attachments) held[static_cast<std::size_t>(a.vertex)] = true;
+  for (const SolverAttachment &a : cloth.changes.attachments) held[static_cast<std::size_t>(a.vertex)] = true;
   std::vector<Row> now;
   if (def.points == nullptr) now = backend.positions(cloth.backend);
-  std::vector<SolverAttachment> attachments = cloth.attachments;
+  std::vector<SolverAttachment> attachments = cloth.changes.attachments;
   for (std::uint32_t i = 0; i < def.count; ++i) {
     const std::uint32_t v = def.vertices[i];
     if (v >= vertex_count)
@@ -220,11 +230,11 @@ void ClothScene::attach(ClothBackend &backend, loam_cloth_id id, const loam_clot
     }
     attachments.push_back({static_cast<int>(v), collider, point, def.compliance > 0.0f ? 1.0f / def.compliance : 0.0f});
   }
-  cloth.attachments.swap(attachments);
+  cloth.changes.attachments.swap(attachments);
   try {
     send(backend, cloth);
   } catch (...) {
-    cloth.attachments.swap(attachments);
+    cloth.changes.attachments.swap(attachments);
     throw;
   }
 }
@@ -233,7 +243,7 @@ void ClothScene::release(ClothBackend &backend, loam_cloth_id id, const std::uin
   Cloth &cloth = changeable(id);
   check_range("count", count, 1, static_cast<double>(cloth.mesh->vertices.size()));
   check_pointer(vertices, "vertices");
-  std::vector<SolverAttachment> attachments = cloth.attachments;
+  std::vector<SolverAttachment> attachments = cloth.changes.attachments;
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto at = std::find_if(attachments.begin(), attachments.end(), [&](const SolverAttachment &a) {
       return static_cast<std::uint32_t>(a.vertex) == vertices[i];
@@ -242,16 +252,16 @@ void ClothScene::release(ClothBackend &backend, loam_cloth_id id, const std::uin
       throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("vertices[%u], %u, is not attached", i, vertices[i]));
     attachments.erase(at);
   }
-  cloth.attachments.swap(attachments);
+  cloth.changes.attachments.swap(attachments);
   send(backend, cloth);
 }
 
 void ClothScene::set_wind(ClothBackend &backend, loam_cloth_id id, const float velocity[3], float drag, float lift) {
-  const Cloth &cloth = cloths_.at(id, "cloth");
-  check_vector("velocity", velocity, 1e4);
-  check_range("drag", double(drag), 0, 100);
-  check_range("lift", double(lift), 0, 100);
-  backend.set_wind(cloth.backend, {{velocity[0], velocity[1], velocity[2]}, drag, lift});
+  Cloth &cloth = cloths_.at(id, "cloth");
+  const ClothWind wind = {{velocity[0], velocity[1], velocity[2]}, drag, lift};
+  check_wind(wind);
+  cloth.changes.wind = wind;
+  backend.set_wind(cloth.backend, wind);
 }
 
 void ClothScene::map(ClothBackend &backend, loam_cloth_id id, loam_cloth_view &view) {
@@ -272,7 +282,7 @@ void ClothScene::unmap(loam_cloth_id id) {
 void ClothScene::check_unattached(int collider_slot) const {
   for (std::size_t i = 0; i < cloths_.size(); ++i)
     if (const Cloth *cloth = cloths_.at_index(i); cloth != nullptr)
-      for (const SolverAttachment &a : cloth->attachments)
+      for (const SolverAttachment &a : cloth->changes.attachments)
         if (a.collider == collider_slot)
           throw Error(
               LOAM_ERROR_IN_USE,
@@ -283,7 +293,52 @@ void ClothScene::use_colliders(ClothBackend &backend, const std::vector<int> &in
   if (index_of_slot == index_of_slot_) return;
   index_of_slot_ = index_of_slot;
   for (std::size_t i = 0; i < cloths_.size(); ++i)
-    if (const Cloth *cloth = cloths_.at_index(i); cloth != nullptr && !cloth->attachments.empty()) send(backend, *cloth);
+    if (const Cloth *cloth = cloths_.at_index(i); cloth != nullptr && !cloth->changes.attachments.empty())
+      send(backend, *cloth);
+}
+
+void ClothScene::shift_origin(ClothBackend &backend, const Vec3<float> &by) {
+  for (std::size_t slot = 0; slot < cloths_.size(); ++slot)
+    if (Cloth *cloth = cloths_.at_index(slot); cloth != nullptr && !cloth->changes.attachments.empty()) {
+      for (SolverAttachment &a : cloth->changes.attachments)
+        if (a.collider < 0) a.point = a.point - by;
+      send(backend, *cloth); // as many as before: needs no memory on the machine
+    }
+}
+
+// ------------------------------------------------------------------------------------------------------ snapshots ---
+
+const ClothScene::Description *ClothScene::description(std::size_t slot) const {
+  const Cloth *cloth = slot < cloths_.size() ? cloths_.at_index(slot) : nullptr;
+  return cloth != nullptr ? &cloth->description : nullptr;
+}
+
+ClothScene::Changes ClothScene::changes(std::size_t slot) const { return cloths_.at_index(slot)->changes; }
+
+void ClothScene::set_changes(ClothBackend &backend, const std::vector<Changes> &changes) {
+  std::vector<Changes> before(cloths_.size());
+  std::size_t sent = 0;
+  const auto set = [&](std::size_t slot, const Changes &now) {
+    Cloth *cloth = cloths_.at_index(slot);
+    if (cloth == nullptr) return;
+    before[slot] = cloth->changes;
+    cloth->changes = now;
+    send(backend, *cloth);
+    backend.set_wind(cloth->backend, now.wind);
+  };
+  try {
+    for (; sent < changes.size(); ++sent) set(sent, changes[sent]);
+  } catch (...) {
+    // As they were: there is room for that.
+    for (std::size_t slot = 0; slot <= sent; ++slot) set(slot, Changes(before[slot]));
+    throw;
+  }
+}
+
+void ClothScene::list_state(ClothBackend &backend, std::vector<StateSection> &list) const {
+  for (std::size_t slot = 0; slot < cloths_.size(); ++slot)
+    if (const Cloth *cloth = cloths_.at_index(slot); cloth != nullptr)
+      backend.list_state(cloth->backend, static_cast<std::uint32_t>(slot), list);
 }
 
 } // namespace loam

@@ -19,6 +19,9 @@ loam_cloth_attachment_def default_attachment();
 // Throws Error naming field and value. `thickness` stands in for one of 0.
 SolverCloth make_cloth(const loam_cloth_def &def, const ClothMesh &mesh, float thickness);
 
+// Throws Error naming field and value.
+void check_wind(const ClothWind &wind);
+
 // Which slot of the colliders' table each attachment refers to, and where that collider is among those of a step.
 class ClothScene {
 public:
@@ -34,6 +37,27 @@ public:
   void map(ClothBackend &backend, loam_cloth_id id, loam_cloth_view &view);
   void unmap(loam_cloth_id id);
 
+  // What is attached in space moves along; the vertices are the solver's.
+  void shift_origin(ClothBackend &backend, const Vec3<float> &by);
+
+  // For snapshots, see scene/world_snapshot.cpp. What changes after a cloth was made:
+  struct Changes {
+    std::vector<SolverAttachment> attachments; // with colliders by their slots
+    ClothWind wind{};
+  };
+  std::size_t slot_count() const { return cloths_.size(); }
+  struct Description {
+    loam_cloth_def def; // without the mesh
+    std::uint64_t mesh; // its fingerprint
+    std::uint32_t vertex_count;
+  };
+  // Null if there is none in the slot.
+  const Description *description(std::size_t slot) const;
+  Changes changes(std::size_t slot) const;
+  // All or none of them, by slot.
+  void set_changes(ClothBackend &backend, const std::vector<Changes> &changes);
+  void list_state(ClothBackend &backend, std::vector<StateSection> &list) const;
+
   bool any() const { return count_ > 0; }
   bool any_mapped() const { return mapped_ > 0; }
   // Throws IN_USE if a cloth is attached to the collider in this slot.
@@ -45,7 +69,8 @@ private:
   struct Cloth {
     int backend = -1;
     std::shared_ptr<const ClothMesh> mesh;
-    std::vector<SolverAttachment> attachments; // with colliders by their slots
+    Changes changes;
+    Description description{};
     bool mapped = false;
   };
   void send(ClothBackend &backend, const Cloth &cloth) const;

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <system_error>
 
 #include "cpu/kernel_table.h"
 #include "scene/checks.h"
 #include "scene/collider_shape.h"
+#include "scene/fingerprint.h"
 #include "scene/material.h"
 #include "scene/pose.h"
 #include "scene/sampling.h"
@@ -124,13 +126,48 @@ void loam_world::check_unmapped() const {
 
 // ------------------------------------------------------------------------------------------------------ stepping ---
 
-void loam_world::step(float seconds) {
+void loam_world::check_step(float seconds) const {
   check_above("seconds", static_cast<double>(seconds), 0, 1);
   check_unmapped();
   if (cloths_.any_mapped()) throw Error(LOAM_ERROR_IN_USE, "a cloth's buffers are mapped; call loam_cloth_unmap first");
   if (!(seconds / static_cast<float>(input_.substeps) >= 1e-9f))
     throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("seconds is %g; over %u substeps that is less than 1e-9 s a substep",
                                                     static_cast<double>(seconds), input_.substeps));
+}
+
+void loam_world::step(float seconds) {
+  check_step(seconds);
+  run_step(seconds);
+}
+
+void loam_world::begin_step(float seconds) {
+  check_step(seconds);
+  if (step_thread_ == nullptr) {
+    try {
+      step_thread_ = std::make_unique<StepThread>([this](float s) { run_step(s); });
+    } catch (const std::system_error &error) {
+      throw Error(LOAM_ERROR_OUT_OF_MEMORY, format("no thread for the asynchronous step: %s", error.what()));
+    }
+  }
+  step_thread_->begin(seconds);
+  busy_ = true;
+}
+
+void loam_world::wait() {
+  if (!busy_) throw Error(LOAM_ERROR_INVALID_ARGUMENT, "no step was begun with loam_world_step_async");
+  // Not busy even if the step failed: wait() throws after the step is over.
+  struct Done {
+    bool &busy;
+    ~Done() { busy = false; }
+  } const done{busy_};
+  step_thread_->wait();
+}
+
+void loam_world::check_not_stepping() const {
+  if (busy_) throw Error(LOAM_ERROR_BUSY, "an asynchronous step was begun; call loam_world_wait first");
+}
+
+void loam_world::run_step(float seconds) {
   input_.seconds = seconds;
   limit_stiffness();
   input_.colliders.clear();
@@ -170,6 +207,20 @@ void loam_world::limit_stiffness() {
     if (m->particles > 0) input_.stiffness_share = std::min(input_.stiffness_share, share);
   }
   if (changed) send_materials();
+}
+
+void loam_world::shift_origin(const float offset[3]) {
+  check_vector("offset", offset, 1e6 * static_cast<double>(def_.kernel_radius));
+  check_unmapped();
+  if (cloths_.any_mapped()) throw Error(LOAM_ERROR_IN_USE, "a cloth's buffers are mapped; call loam_cloth_unmap first");
+  const Vec3<float> by = {offset[0], offset[1], offset[2]};
+  backend_->shift_origin(by);
+  cloths_.shift_origin(backend_->cloth(), by);
+  for (std::size_t i = 0; i < colliders_.size(); ++i)
+    if (Collider *c = colliders_.at_index(i); c != nullptr) {
+      c->pose.position = c->pose.position - by;
+      c->target.position = c->target.position - by;
+    }
 }
 
 void loam_world::set_gravity(const float gravity[3]) {
@@ -292,6 +343,13 @@ loam_collider_id loam_world::create_collider(const loam_collider_def &def) {
   collider.shape = backend_->add_shape(make_collider_shape(def, collider.report));
   collider.report.struct_size = sizeof collider.report;
   input_.wake = true;
+  collider.def = def;
+  collider.def.mesh = {};
+  collider.def.grid = {};
+  // Once checked, they can be read.
+  const bool has_mesh = def.kind == LOAM_COLLIDER_MESH || def.kind == LOAM_COLLIDER_HULL;
+  collider.mesh = has_mesh ? mesh_fingerprint(def.mesh) : 0;
+  collider.grid = def.kind == LOAM_COLLIDER_GRID ? grid_fingerprint(def.grid) : 0;
   return colliders_.add(collider);
 }
 

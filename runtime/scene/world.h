@@ -7,9 +7,13 @@
 
 #include "scene/cloth.h"
 #include "scene/slot_table.h"
+#include "scene/step_thread.h"
 #include "solver/backend.h"
 
 namespace loam {
+
+class SnapshotReader;
+class SnapshotWriter;
 
 // Throws Error INVALID_ARGUMENT naming the field.
 void check_world_def(const loam_world_def &def);
@@ -25,6 +29,12 @@ public:
   void log(std::int32_t level, const char *text) const;
 
   void step(float seconds);
+  void begin_step(float seconds);
+  void wait();
+  bool is_stepping() const { return busy_ && step_thread_->is_running(); }
+  // Throws BUSY between begin_step() and wait().
+  void check_not_stepping() const;
+  void shift_origin(const float offset[3]);
   void set_gravity(const float gravity[3]);
   void wake() { input_.wake = true; }
   void set_accuracy(std::uint32_t substeps, std::uint32_t iterations);
@@ -56,6 +66,11 @@ public:
   void map(loam_particle_view &view);
   void unmap();
 
+  // In world_snapshot.cpp.
+  std::uint64_t snapshot_size();
+  std::uint64_t save(std::byte *memory, std::uint64_t capacity);
+  void restore(const std::byte *memory, std::uint64_t bytes);
+
 private:
   struct Material {
     loam_material_def def;
@@ -72,8 +87,19 @@ private:
     std::vector<loam::PairLaw> pairs; // materials that have another law
     loam::Pose pose{}, target{};
     loam_collider_report report{};
+    loam_collider_def def{};          // without mesh and grid
+    std::uint64_t mesh = 0, grid = 0; // their fingerprints
   };
+  struct Moving; // what a snapshot brings of the scene
+  Moving moving() const;
+  template <class Fields> void exchange(Fields &fields, Moving &moving) const;
+  void write(loam::SnapshotWriter &writer);
+  void check(const Moving &moving) const;
+  void check_state(const loam::SnapshotReader &snapshot, const std::vector<loam::StateSection> &state,
+                   std::uint64_t next_id) const;
   void check_unmapped() const;
+  void check_step(float seconds) const;
+  void run_step(float seconds);
   void check_motion(std::uint64_t count, const float *positions, const float *velocities) const;
   void check_named(std::uint64_t count) const;
   void check_room(std::uint64_t count) const; // for so many more particles
@@ -94,4 +120,7 @@ private:
   loam::StepInput input_{};
   std::uint64_t next_id_ = 0; // of particles; those of removed ones do not come back
   bool mapped_ = false;
+  bool busy_ = false; // a step was begun and not waited for
+  std::unique_ptr<loam::StepThread>
+      step_thread_; // since the first asynchronous step; the last member, since it uses the others
 };

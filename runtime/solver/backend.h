@@ -17,6 +17,7 @@
 #include "solver/cloth_backend.h"
 #include "solver/collider_shape.h"
 #include "solver/execution_settings.h"
+#include "solver/state_section.h"
 
 namespace loam {
 
@@ -104,7 +105,20 @@ public:
   // Throws Error; then the particles stand at the end of the last whole substep, and `statistics.substeps_done` says of which.
   virtual void step(const StepInput &input) = 0;
   virtual void map(loam_particle_view &view) = 0;
+  // Copies the particles to buffers that steps leave alone, and gives the view of those.
+  virtual void keep(loam_particle_view &view) = 0;
+  // Gives them back; false if there are none.
+  virtual bool drop() = 0;
   virtual std::uint64_t state_hash() = 0;
+  // Takes `by` away from the positions of particles and cloth.
+  virtual void shift_origin(const Vec3<float> &by) = 0;
+  // What a step starts from, as it would be with so many particles; at most the capacity. Cloths add theirs.
+  virtual std::vector<StateSection> state(std::uint64_t particles) = 0;
+  virtual void read_state(const StateSection &section, std::uint64_t first, std::size_t count, std::uint32_t *words) = 0;
+  virtual void write_state(const StateSection &section, std::uint64_t first, std::size_t count,
+                           const std::uint32_t *words) = 0; // whole elements
+  // After new state was written for so many particles: all that follows from it.
+  virtual void adopt_state(std::uint64_t particles) = 0;
   virtual const loam_statistics &statistics() const = 0;
   virtual const Schedule &schedule() const = 0;
   virtual std::vector<MemoryUse> memory() const = 0;

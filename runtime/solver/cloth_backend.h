@@ -7,6 +7,7 @@
 #include <loam/cloth.h>
 
 #include "math/vector.h"
+#include "solver/state_section.h"
 
 namespace loam {
 
@@ -64,6 +65,8 @@ public:
   virtual void set_attachments(int cloth, const std::vector<SolverAttachment> &attachments) = 0;
   virtual void set_wind(int cloth, const ClothWind &wind) = 0;
   virtual std::vector<Row> positions(int cloth) = 0;
+  // Puts the cloth's state into a list, as that of `object`. Inverse masses are not in it: they follow from the attachments.
+  virtual void list_state(int cloth, std::uint32_t object, std::vector<StateSection> &list) = 0;
   virtual void map(int cloth, loam_cloth_view &view) = 0;
 };
 

@@ -34,7 +34,14 @@ public:
   void set_attachments(int cloth, const std::vector<SolverAttachment> &attachments) override;
   void set_wind(int cloth, const ClothWind &wind) override { at(cloth).wind = wind; }
   std::vector<Row> positions(int cloth) override;
+  void list_state(int cloth, std::uint32_t object, std::vector<StateSection> &list) override;
   void map(int cloth, loam_cloth_view &view) override;
+
+  void shift_origin(const Vec3<float> &by) {
+    for_each_cloth([&](Cloth &cloth) {
+      executor_.for_each(cloth.vertex_count, ShiftPositions{cloth.positions.data(), by});
+    });
+  }
 
   bool empty() const { return in_use_ == 0; }
   std::uint64_t bytes() const;
@@ -290,6 +297,14 @@ template <class Executor> std::vector<Row> ClothSolver<Executor>::positions(int 
   std::vector<Row> rows(static_cast<std::size_t>(cloth.vertex_count));
   executor_.download(rows.data(), cloth.positions.data(), rows.size());
   return rows;
+}
+
+template <class Executor>
+void ClothSolver<Executor>::list_state(int index, std::uint32_t object, std::vector<StateSection> &list) {
+  Cloth &cloth = at(index);
+  const auto n = static_cast<std::uint64_t>(cloth.vertex_count);
+  list.push_back({StateKind::cloth_positions, object, reinterpret_cast<std::byte *>(cloth.positions.data()), 4, 3, n});
+  list.push_back({StateKind::cloth_velocities, object, reinterpret_cast<std::byte *>(cloth.velocities.data()), 4, 3, n});
 }
 
 template <class Executor> void ClothSolver<Executor>::map(int index, loam_cloth_view &view) {

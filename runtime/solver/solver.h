@@ -36,7 +36,14 @@ public:
   std::uint64_t particle_count() const override { return static_cast<std::uint64_t>(count_); }
   void step(const StepInput &input) override;
   void map(loam_particle_view &view) override;
+  void keep(loam_particle_view &view) override;
+  bool drop() override;
+  void shift_origin(const Vec3<float> &by) override;
   std::uint64_t state_hash() override;
+  std::vector<StateSection> state(std::uint64_t particles) override;
+  void read_state(const StateSection &section, std::uint64_t first, std::size_t count, std::uint32_t *words) override;
+  void write_state(const StateSection &section, std::uint64_t first, std::size_t count, const std::uint32_t *words) override;
+  void adopt_state(std::uint64_t particles) override;
   const loam_statistics &statistics() const override { return statistics_; }
   const Schedule &schedule() const override { return schedule_; }
   std::vector<MemoryUse> memory() const override;
@@ -150,6 +157,20 @@ private:
   Array<float> meetings_; // material by material
   bool contact_between_materials_ = false;
   Array<Row> jacobi_rows_[3], jacobi_drift_rows_[3];
+  struct KeptFrame {
+    Array<Row> positions, velocities;
+    Array<float> strains, densities;
+    Array<std::uint32_t> ids, materials;
+    std::uint64_t bytes() const {
+      return positions.bytes() + velocities.bytes() + strains.bytes() + densities.bytes() + ids.bytes() + materials.bytes();
+    }
+  };
+  KeptFrame make_frame() {
+    return {executor_.template array<Row>(),           executor_.template array<Row>(),
+            executor_.template array<float>(),         executor_.template array<float>(),
+            executor_.template array<std::uint32_t>(), executor_.template array<std::uint32_t>()};
+  }
+  KeptFrame kept_{make_frame()}; // where the host asked for it
   ColliderShapes<Executor> shapes_{executor_};
   ContactLaws<Executor> contact_laws_{executor_};
   std::vector<ColliderView> views_, views_before_; // of this substep and the one before
@@ -348,6 +369,43 @@ template <class Executor> void Solver<Executor>::map(loam_particle_view &view) {
   view.densities = densities_.data();
 }
 
+template <class Executor> void Solver<Executor>::keep(loam_particle_view &view) {
+  if (kept_.bytes() == 0) {
+    const auto capacity = static_cast<std::size_t>(settings_.particle_capacity);
+    KeptFrame frame = make_frame(); // all of it or nothing: memory may be refused
+    frame.positions.reserve(capacity);
+    frame.velocities.reserve(capacity);
+    frame.strains.reserve(6 * capacity);
+    frame.densities.reserve(capacity);
+    frame.ids.reserve(capacity);
+    frame.materials.reserve(capacity);
+    kept_ = std::move(frame);
+  }
+  const auto n = static_cast<std::size_t>(count_);
+  executor_.session([&] {
+    executor_.copy(kept_.positions.data(), now_.positions.data(), n);
+    executor_.copy(kept_.velocities.data(), now_.velocities.data(), n);
+    executor_.copy(kept_.strains.data(), now_.strains.data(), 6 * n);
+    executor_.copy(kept_.ids.data(), now_.ids.data(), n);
+    executor_.copy(kept_.materials.data(), now_.materials.data(), n);
+    executor_.for_each(count_, ComputeDensities{kept_.positions.data(), kept_.velocities.data(), kept_.densities.data()});
+  });
+  view.memory = Executor::memory_kind;
+  view.count = particles();
+  view.ids = kept_.ids.data();
+  view.positions = &kept_.positions.data()->x;
+  view.velocities = &kept_.velocities.data()->x;
+  view.materials = kept_.materials.data();
+  view.strains = kept_.strains.data();
+  view.densities = kept_.densities.data();
+}
+
+template <class Executor> bool Solver<Executor>::drop() {
+  if (kept_.bytes() == 0) return false;
+  kept_ = make_frame();
+  return true;
+}
+
 template <class Executor> std::uint64_t Solver<Executor>::state_hash() {
   std::uint64_t hash = 0;
   executor_.session([&] { hash = executor_.reduce(count_, StateHash{now_.arrays()}); });
@@ -373,6 +431,7 @@ template <class Executor> std::vector<MemoryUse> Solver<Executor>::memory() cons
   if (cloth_.bytes() > 0) uses.push_back({"cloth", cloth_.bytes()});
   if (settings_.sleep_speed > 0)
     uses.push_back({"sleep", awake_cells_.bytes() + near_cells_.bytes() + active_cells_.bytes()});
+  if (kept_.bytes() > 0) uses.push_back({"kept frame", kept_.bytes()});
   if (densities_.bytes() > 0) uses.push_back({"mapped densities", densities_.bytes()});
   return uses;
 }
@@ -380,6 +439,7 @@ template <class Executor> std::vector<MemoryUse> Solver<Executor>::memory() cons
 } // namespace loam
 
 #include "solver/edit.h"
+#include "solver/state.h"
 #include "solver/step.h"
 #include "solver/substep.h"
 

@@ -20,9 +20,13 @@ TEST(Base, EveryStatusHasItsName) {
                          "LOAM_ERROR_IN_USE",
                          "LOAM_ERROR_INVALID_MESH",
                          "LOAM_ERROR_DEVICE",
-                         "LOAM_ERROR_INTERNAL"};
-  for (loam_status status = 0; status < 10; ++status) EXPECT_STREQ(loam_status_name(status), names[status]);
-  for (const loam_status unknown : {-1, 10, 1000, INT32_MIN, INT32_MAX})
+                         "LOAM_ERROR_INTERNAL",
+                         "LOAM_ERROR_INVALID_SNAPSHOT",
+                         "LOAM_ERROR_SNAPSHOT_MISMATCH",
+                         "LOAM_ERROR_BUSY"};
+  for (loam_status status = 0; status < loam_status(std::size(names)); ++status)
+    EXPECT_STREQ(loam_status_name(status), names[status]);
+  for (const loam_status unknown : {-1, loam_status(std::size(names)), 1000, INT32_MIN, INT32_MAX})
     EXPECT_STREQ(loam_status_name(unknown), "LOAM_ERROR_UNKNOWN");
 }
 

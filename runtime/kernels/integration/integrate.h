@@ -63,9 +63,11 @@ struct Advance {
       x.y = moved.y;
       x.z = moved.z;
     }
-    const float j = minimum(maximum(log_volumes[i], -0.7f), 0.7f);
-    x.w = rest_volumes[i] * volume_factor(j);
+    x.w = true_volume(rest_volumes[i], log_volumes[i]);
     positions[i] = x;
+  }
+  LOAM_FN static float true_volume(float rest_volume, float log_volume) {
+    return rest_volume * volume_factor(minimum(maximum(log_volume, -0.7f), 0.7f));
   }
   // exp(j) for |j| <= 0.7, without a library call whose bits differ between machines
   LOAM_FN static float volume_factor(float j) {
@@ -74,6 +76,24 @@ struct Advance {
     for (int k = 0; k < 8; ++k) sum = sum * j + inverse_factorial[k];
     return sum;
   }
+};
+
+// The origin moves to `by`.
+struct ShiftPositions {
+  Row *positions;
+  Vec3<float> by;
+  LOAM_FN void operator()(int i) const {
+    const Row x = positions[i];
+    positions[i] = {x.x - by.x, x.y - by.y, x.z - by.z, x.w};
+  }
+};
+
+// True volumes again, from what they were made of.
+struct RestoreVolumes {
+  Row *positions;
+  const float *log_volumes;
+  const float *rest_volumes;
+  LOAM_FN void operator()(int i) const { positions[i].w = Advance::true_volume(rest_volumes[i], log_volumes[i]); }
 };
 
 } // namespace loam

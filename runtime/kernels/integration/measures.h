@@ -143,9 +143,10 @@ struct StateHash {
     const float rows[8] = {x.x, x.y, x.z, x.w, v.x, v.y, v.z, v.w};
     for (int k = 0; k < 8; ++k) h = mix(h, bits(rows[k]));
     for (int k = 0; k < 6; ++k) h = mix(h, bits(particles.strains[6 * static_cast<long>(i) + k]));
-    if (particles.histories != nullptr) h = mix(h, bits(particles.histories[i]));
-    if (particles.drifts != nullptr)
-      for (int k = 0; k < 3; ++k) h = mix(h, bits(particles.drifts[3 * static_cast<long>(i) + k]));
+    // What no material asks for is 0 where it is held, and counts the same where it is not.
+    h = mix(h, particles.histories != nullptr ? bits(particles.histories[i]) : 0);
+    for (int k = 0; k < 3; ++k)
+      h = mix(h, particles.drifts != nullptr ? bits(particles.drifts[3 * static_cast<long>(i) + k]) : 0);
     h = mix(h, bits(particles.log_volumes[i]));
     h = mix(h, bits(particles.rest_volumes[i]));
     if (particles.rests != nullptr) h = mix(h, bits(particles.rests[i]));

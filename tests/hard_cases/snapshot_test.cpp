@@ -1,0 +1,135 @@
+/* Snapshots that were damaged: every bit, every length, thousands at random, and thousands whose checksum was forged to fit. None may crash, none that is
+ * refused may change the world, and what is accepted can be stepped. */
+#include <gtest/gtest.h>
+
+#include "scene/snapshot_format.h"
+#include "support/cloths.h"
+#include "support/hooks.h"
+#include "support/snapshots.h"
+
+namespace loam {
+namespace {
+
+using snapshots::Bytes;
+
+/* Sand and snow on a plane, and a sheet that hangs from it. */
+class DamagedSnapshot : public testing::Test {
+protected:
+  DamagedSnapshot() : world_(definition()) {
+    world_.add(scenes::jittered_block(scenes::sand(), 8));
+    scenes::Scene other = scenes::jittered_block(scenes::plasticine(), 8);
+    other.planes.clear();
+    world_.add(other);
+    const cloths::Grid grid(3, 3, 0.02f);
+    const loam_cloth_def cloth_def = cloths::definition(grid);
+    loam_cloth_id cloth = 0;
+    scenes::require(loam_cloth_create(world_.get(), &cloth_def, &cloth), "cloth");
+    loam_cloth_attachment_def attachment;
+    scenes::require(loam_cloth_attachment_def_default(&attachment, sizeof attachment), "default");
+    const std::uint32_t corner = 0;
+    attachment.count = 1;
+    attachment.vertices = &corner;
+    scenes::require(loam_cloth_attach(world_.get(), cloth, &attachment), "attach");
+    world_.step(1e-3f);
+    saved_ = snapshots::save(world_.get());
+    hash_ = world_.state_hash();
+  }
+  static loam_world_def definition() {
+    loam_world_def def = cloths::world_def(2, 2);
+    def.particle_capacity = 32;
+    return def;
+  }
+  loam_status restore(const Bytes &bytes) { return loam_snapshot_restore(world_.get(), bytes.data(), bytes.size()); }
+  void expect_unchanged() {
+    EXPECT_EQ(world_.state_hash(), hash_);
+    EXPECT_EQ(snapshots::save(world_.get()), saved_);
+  }
+  std::uint64_t next() { return (random_ = random_ * 6364136223846793005u + 1442695040888963407u) >> 33; }
+  /* One to eight changes of bytes. */
+  Bytes damaged(std::size_t from) {
+    Bytes bytes = saved_;
+    for (std::uint64_t k = 1 + next() % 8; k > 0; --k) {
+      const std::size_t at = from + next() % (bytes.size() - from);
+      switch (next() % 3) {
+      case 0:
+        bytes[at] = static_cast<std::byte>(next());
+        break;
+      case 1:
+        bytes[at] ^= static_cast<std::byte>(1u << (next() % 8));
+        break;
+      default:
+        for (std::size_t i = at; i < std::min(at + 4, bytes.size()); ++i) bytes[i] = std::byte{0xFF};
+      }
+    }
+    return bytes;
+  }
+
+  scenes::World world_;
+  Bytes saved_;
+  std::uint64_t hash_ = 0, random_ = 1;
+};
+
+TEST_F(DamagedSnapshot, EveryBitIsGuarded) {
+  Bytes bytes = saved_;
+  for (std::size_t at = 0; at < bytes.size(); ++at)
+    for (unsigned bit = 0; bit < 8; ++bit) {
+      bytes[at] ^= static_cast<std::byte>(1u << bit);
+      ASSERT_EQ(restore(bytes), LOAM_ERROR_INVALID_SNAPSHOT) << "bit " << bit << " of byte " << at;
+      bytes[at] ^= static_cast<std::byte>(1u << bit);
+    }
+  expect_unchanged();
+  RecordProperty("bits", std::to_string(8 * bytes.size()));
+}
+
+TEST_F(DamagedSnapshot, EveryOtherLengthIsRefused) {
+  for (std::size_t size = 0; size < saved_.size(); ++size)
+    ASSERT_EQ(loam_snapshot_restore(world_.get(), saved_.data(), size), LOAM_ERROR_INVALID_SNAPSHOT) << size;
+  Bytes longer = saved_;
+  for (int k = 0; k < 64; ++k) {
+    longer.push_back(static_cast<std::byte>(next()));
+    ASSERT_EQ(restore(longer), LOAM_ERROR_INVALID_SNAPSHOT) << k;
+  }
+  expect_unchanged();
+}
+
+TEST_F(DamagedSnapshot, RandomDamageIsRefused) {
+  for (int k = 0; k < 5000; ++k) {
+    const Bytes bytes = damaged(0);
+    if (bytes == saved_) continue;
+    ASSERT_EQ(restore(bytes), LOAM_ERROR_INVALID_SNAPSHOT) << k;
+  }
+  expect_unchanged();
+}
+
+TEST_F(DamagedSnapshot, AForgedChecksumDoesNotHelp) {
+  int refused = 0, accepted = 0;
+  for (int k = 0; k < (hooks::short_run() ? 1000 : 5000); ++k) {
+    Bytes bytes = damaged(k % 4 == 0 ? 0 : sizeof(SnapshotHeader));
+    if (k % 5 == 0) bytes.resize(next() % (bytes.size() + 1));
+    if (bytes.size() >= sizeof(SnapshotHeader)) {
+      SnapshotHeader header;
+      std::memcpy(&header, bytes.data(), sizeof header);
+      header.bytes = bytes.size();
+      std::memcpy(bytes.data(), &header, sizeof header);
+      header.checksum = snapshot_checksum(bytes.data(), bytes.size());
+      std::memcpy(bytes.data(), &header, sizeof header);
+    }
+    const loam_status status = restore(bytes);
+    if (status == LOAM_OK) {
+      ++accepted;
+      ASSERT_EQ(loam_world_step(world_.get(), 1e-3f), LOAM_OK) << loam_last_error();
+      snapshots::restore(world_.get(), saved_);
+    } else {
+      ++refused;
+      ASSERT_TRUE(status == LOAM_ERROR_INVALID_SNAPSHOT || status == LOAM_ERROR_SNAPSHOT_MISMATCH)
+          << scenes::outcome(status);
+    }
+    if (k % 16 == 0) expect_unchanged();
+  }
+  expect_unchanged();
+  EXPECT_GT(refused, 300); /* both happen */
+  EXPECT_GT(accepted, 300);
+}
+
+} // namespace
+} // namespace loam
