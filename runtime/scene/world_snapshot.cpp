@@ -2,6 +2,8 @@
 //
 // A restore first reads and checks everything, then asks for what memory may be needed, and only then changes the world.
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 
 #include "scene/checks.h"
@@ -51,7 +53,8 @@ public:
   }
   template <class T> void same(const char *name, const T &value) {
     const T saved = reader_.take<T>();
-    if (std::memcmp(&saved, &value, sizeof value) == 0) return;
+    using Bytes = std::array<unsigned char, sizeof(T)>;
+    if (std::bit_cast<Bytes>(saved) == std::bit_cast<Bytes>(value)) return;
     const std::string whose = kind_ != nullptr ? format("%s %zu: ", kind_, index_) : std::string();
     if constexpr (std::is_floating_point_v<T>)
       throw Error(LOAM_ERROR_SNAPSHOT_MISMATCH, format("%s%s is %g in the world and %g in the snapshot", whose.c_str(), name,
