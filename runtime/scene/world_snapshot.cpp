@@ -235,6 +235,7 @@ template <class Fields> void loam_world::exchange(Fields &fields, Moving &moving
     for (const float component : c->def.warp) fields.same("warp", component);
     fields.same("greatest_stretch", c->def.greatest_stretch);
     fields.same("thickness", c->def.thickness);
+    fields.same("particle_friction", c->def.particle_friction);
     fields.list(moving.cloths[i].attachments, c->vertex_count);
     fields.value(moving.cloths[i].wind);
   }
