@@ -102,8 +102,9 @@ TEST_F(DamagedSnapshot, RandomDamageIsRefused) {
 }
 
 TEST_F(DamagedSnapshot, AForgedChecksumDoesNotHelp) {
+  const int tries = hooks::short_run() ? 1000 : 5000;
   int refused = 0, accepted = 0;
-  for (int k = 0; k < (hooks::short_run() ? 1000 : 5000); ++k) {
+  for (int k = 0; k < tries; ++k) {
     Bytes bytes = damaged(k % 4 == 0 ? 0 : sizeof(SnapshotHeader));
     if (k % 5 == 0) bytes.resize(next() % (bytes.size() + 1));
     if (bytes.size() >= sizeof(SnapshotHeader)) {
@@ -127,8 +128,8 @@ TEST_F(DamagedSnapshot, AForgedChecksumDoesNotHelp) {
     if (k % 16 == 0) expect_unchanged();
   }
   expect_unchanged();
-  EXPECT_GT(refused, 300); /* both happen */
-  EXPECT_GT(accepted, 300);
+  EXPECT_GT(refused, tries / 20); /* both happen */
+  EXPECT_GT(accepted, tries / 20);
 }
 
 } // namespace
