@@ -6,8 +6,8 @@
  *
  * Vertices keep `thickness` from colliders, with the collider's friction, and are swept against them, so that no vertex passes a surface. What lies between
  * vertices is not looked at: over a convex collider of radius R, edges of length L cut in by up to L^2 / (8 R), less the thickness.
- * Particles keep half a kernel radius from the triangles, and push and rub against them both ways (what a substep cannot resolve is taken from the particle alone); edges should be no longer than a few kernel radii, and no shorter
- * than half of one. Cloth does not collide with itself or with other cloth.
+ * Particles keep half a kernel radius from the triangles, and push and rub against them both ways (what a substep cannot resolve is taken from the particle
+ * alone); edges should be no longer than half of one. Cloth does not collide with itself or with other cloth, and in a world with cloth nothing sleeps.
  *
  * Thread contract: as for the world; during an asynchronous step every function here that takes a world answers LOAM_ERROR_BUSY.
  */
@@ -31,7 +31,7 @@ typedef struct loam_cloth_def {
 
   /* The shape at rest, in the cloth's own frame; copied. Each vertex is a vertex of the cloth, in this order: so vertices must not be repeated for normals or textures. Every
    * vertex belongs to a triangle, every edge to at most two, which agree on their orientation. Within 1e4 m, at most 2^24 triangles. The way edges run matters little for
-   * stretch and shear; bending, exact on equilateral triangles, is up to a sixth softer along the sides of a grid. */
+   * stretch and shear; bending is up to a sixth softer along the sides of a grid. */
   loam_mesh mesh;
   float position[3]; /* where the mesh's origin is at the start, metres; default 0 */
   float rotation[4]; /* unit quaternion x, y, z, w; default identity */

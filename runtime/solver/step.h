@@ -21,7 +21,8 @@ template <class Executor> void Solver<Executor>::step(const StepInput &input) {
   const auto begin = std::chrono::steady_clock::now();
   executor_.lap();
   executor_.session([&] {
-    if (input.wake && schedule_.sleep >= 0) wake_all();
+    // Cloth cannot tell whom it touches, so nothing sleeps beside it.
+    if ((input.wake || !cloth_.empty()) && schedule_.sleep >= 0) wake_all();
     if (count_ > 0 || !cloth_.empty())
       for (std::uint32_t i = 0; i < input.substeps; ++i) {
         const bool idle = schedule_.sleep >= 0 && count_ > 0 && all_asleep(input, i) && cloth_.empty();
