@@ -9,7 +9,7 @@ program=${1:-$root/build/release/benchmarks/loam-benchmarks}
 shift || true
 [[ -x $program ]] || { echo "record.sh: $program is not there: build it first" >&2; exit 1; }
 
-model=$(lscpu | sed -n 's/^Model name: *//p' | head -n 1)
+model=$(lscpu | sed -n 's/^Model name: *//p' | sed -n 1p)
 commit=$(git -C "$root" rev-parse --short HEAD)
 git -C "$root" diff --quiet HEAD -- include runtime cuda benchmarks tests/reference tests/support || commit+=-modified
 name=$(tr -cs '[:alnum:]\n' '-' <<<"$model" | tr '[:upper:]' '[:lower:]' | sed 's/-$//')-$commit
@@ -26,7 +26,7 @@ compiler=$(sed -n 's/^CMAKE_CXX_COMPILER:[A-Z]*=//p' "$cache" 2>/dev/null || tru
   if command -v nvidia-smi >/dev/null && gpu=$(nvidia-smi --query-gpu=name,driver_version --format=csv,noheader 2>/dev/null); then
     echo "- GPU: $gpu"
   fi
-  echo "- Compiler: $("${compiler:-c++}" --version | head -n 1)"
+  echo "- Compiler: $("${compiler:-c++}" --version | sed -n 1p)"
   echo "- Load when started: $(cut -d ' ' -f 1-3 /proc/loadavg)"
   echo
 } >"$results/$name.md"

@@ -22,6 +22,6 @@ mkdir -p "$output"
 build/release/samples/loam-run "$scene" --out "$output" "$@"
 
 say "Done. What was made, in $PWD/$output:"
-find "$output" -maxdepth 1 -mindepth 1 -printf '%f\n' | sort | sed 's/^/  /' | head -n 20
+find "$output" -maxdepth 1 -mindepth 1 -printf '%f\n' | sort | sed -n '1,20s/^/  /p'
 count=$(find "$output" -name '*.png' | wc -l)
 echo "  ($count pictures in all; the last: $(find "$output" -name '*.png' | sort | tail -n 1))"

@@ -17,7 +17,7 @@ if ! nvidia-smi -L >/dev/null 2>&1; then
 fi
 command -v nvcc >/dev/null || export PATH=$PATH:/usr/local/cuda/bin
 command -v nvcc >/dev/null || die "nvcc is neither on the PATH nor in /usr/local/cuda/bin"
-query() { nvidia-smi --query-gpu="$1" --format=csv,noheader --id=0 | head -n 1; }
+query() { nvidia-smi --query-gpu="$1" --format=csv,noheader --id=0 | sed -n 1p; }
 architecture=$(query compute_cap | tr -d '. ')
 
 logs=$out/logs
