@@ -237,7 +237,8 @@ typedef struct loam_stage {
   uint64_t items; /* what it worked through in that step: particles, pairs or contacts, times its executions */
 } loam_stage;
 
-/* Copies up to `capacity` stages; *count receives how many there are. `stages` may be null when `capacity` is 0. */
+/* Copies up to `capacity` stages of the next step, as the world's contents call for them now; *count receives how many there are. Times and items are those of the
+ * last step, or 0 where what the world contains has changed since. `stages` may be null when `capacity` is 0. */
 LOAM_API loam_status loam_world_get_stages(const loam_world *world, loam_stage *stages, uint32_t capacity, uint32_t *count);
 
 /* Memory that the world holds for one effect, on the machine that runs it. */

@@ -135,7 +135,7 @@ template <size_t N> void copy_name(char (&to)[N], const std::string &from) {
 loam_status loam_world_get_stages(const loam_world *world, loam_stage *stages, uint32_t capacity, uint32_t *count) {
   return guarded(world, [&] {
     check_pointer(world, "world");
-    copy_rows(world->backend().schedule().stages(), stages, capacity, count, "stages", [](const Stage &stage) {
+    copy_rows(world->schedule().stages(), stages, capacity, count, "stages", [](const Stage &stage) {
       loam_stage row = {};
       copy_name(row.name, stage.name);
       row.seconds = stage.seconds;

@@ -3,6 +3,7 @@
 //     kind (3 bits) | tag of the world (13 bits) | generation (16 bits) | index (32 bits)
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -71,6 +72,9 @@ public:
       ++slot.generation;
   }
   std::size_t size() const { return slots_.size(); }
+  bool empty() const {
+    return std::none_of(slots_.begin(), slots_.end(), [](const Slot &slot) { return slot.in_use; });
+  }
   T *at_index(std::size_t index) { return slots_[index].in_use ? &slots_[index].object : nullptr; }
   const T *at_index(std::size_t index) const { return slots_[index].in_use ? &slots_[index].object : nullptr; }
 

@@ -167,6 +167,8 @@ void loam_world::check_not_stepping() const {
   if (busy_) throw Error(LOAM_ERROR_BUSY, "an asynchronous step was begun; call loam_world_wait first");
 }
 
+const loam::Schedule &loam_world::schedule() const { return backend_->schedule(!colliders_.empty()); }
+
 void loam_world::run_step(float seconds) {
   input_.seconds = seconds;
   limit_stiffness();

@@ -42,6 +42,7 @@ public:
   std::uint32_t instruction_set() const { return execution_.instruction_set; }
   loam::Backend &backend() { return *backend_; }
   const loam::Backend &backend() const { return *backend_; }
+  const loam::Schedule &schedule() const;
 
   loam_material_id create_material(const loam_material_def &def);
   void set_material(loam_material_id id, const loam_material_def &def);

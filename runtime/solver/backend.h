@@ -120,7 +120,8 @@ public:
   // After new state was written for so many particles: all that follows from it.
   virtual void adopt_state(std::uint64_t particles) = 0;
   virtual const loam_statistics &statistics() const = 0;
-  virtual const Schedule &schedule() const = 0;
+  // Of what the world contains now.
+  virtual const Schedule &schedule(bool colliders) = 0;
   virtual std::vector<MemoryUse> memory() const = 0;
   virtual ClothBackend &cloth() = 0;
 };

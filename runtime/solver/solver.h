@@ -45,7 +45,10 @@ public:
   void write_state(const StateSection &section, std::uint64_t first, std::size_t count, const std::uint32_t *words) override;
   void adopt_state(std::uint64_t particles) override;
   const loam_statistics &statistics() const override { return statistics_; }
-  const Schedule &schedule() const override { return schedule_; }
+  const Schedule &schedule(bool colliders) override {
+    compile_schedule(colliders);
+    return schedule_;
+  }
   std::vector<MemoryUse> memory() const override;
   ClothBackend &cloth() override { return cloth_; }
 

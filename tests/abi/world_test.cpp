@@ -143,6 +143,36 @@ TEST_F(SmallWorld, StagesAndMemoryAreCopiedUpToTheCapacity) {
   EXPECT_GT(row.bytes, 64u * 64);
 }
 
+TEST(Stages, AreThoseThatTheContentsCallFor) {
+  const scenes::Scene scene = scenes::jittered_block(scenes::sand(), 8);
+  const scenes::World world(scenes::world_def(scene));
+  const auto has = [&](const std::string &name) {
+    const std::vector<loam_stage> stages = world.stages();
+    return std::any_of(stages.begin(), stages.end(), [&](const loam_stage &stage) { return stage.name == name; });
+  };
+  EXPECT_TRUE(has("advance")); // though nothing was stepped
+  EXPECT_FALSE(has("find contacts"));
+  loam_collider_def def;
+  ASSERT_EQ(loam_collider_def_default(&def, sizeof def), LOAM_OK);
+  loam_collider_id collider = 0;
+  ASSERT_EQ(loam_collider_create(world.get(), &def, &collider), LOAM_OK);
+  EXPECT_TRUE(has("find contacts"));
+  ASSERT_EQ(loam_collider_destroy(world.get(), collider), LOAM_OK);
+  EXPECT_FALSE(has("find contacts"));
+
+  loam_material_id material = 0;
+  ASSERT_EQ(loam_material_create(world.get(), &scene.material, &material), LOAM_OK);
+  EXPECT_FALSE(has("solve sand")); // nothing is made of it
+  loam_particles_def particles;
+  ASSERT_EQ(loam_particles_def_default(&particles, sizeof particles), LOAM_OK);
+  particles.material = material;
+  particles.count = scene.count();
+  particles.positions = scene.positions.data();
+  ASSERT_EQ(loam_particles_add(world.get(), &particles, nullptr), LOAM_OK);
+  EXPECT_TRUE(has("solve sand"));
+  EXPECT_TRUE(has("strain sand"));
+}
+
 TEST_F(SmallWorld, TheHashTellsStatesApart) {
   const std::uint64_t hash = world_.state_hash();
   EXPECT_EQ(world_.state_hash(), hash); // asking changes nothing

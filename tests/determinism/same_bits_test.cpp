@@ -113,6 +113,7 @@ TEST(SameBitsOfSleep, ForAnyNumberOfThreadsAndInstructionSet) {
   scenes::Scene block = scenes::drop_block(scenes::sand(), 5, 0.15f);
   block.planes.clear();
   for (const std::uint32_t solver : {LOAM_SOLVER_GAUSS_SEIDEL, LOAM_SOLVER_JACOBI}) {
+    if (solver == LOAM_SOLVER_JACOBI && hooks::short_run()) continue;
     std::uint64_t most = 0;
     const auto hash = [&](std::uint32_t threads, std::uint32_t set) {
       loam_world_def def = scenes::world_def(layer);

@@ -1,0 +1,204 @@
+/* The effects, each a change of the scene. */
+#include "effects.h"
+
+#include "support/cloths.h"
+#include "support/meshes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace loam::effects {
+
+namespace {
+
+using scenes::require;
+
+constexpr float spacing = 0.01f;
+
+struct Box {
+  float lower[3], upper[3];
+};
+
+Box bounds(const scenes::Scene &scene) {
+  Box box = {{1e9f, 1e9f, 1e9f}, {-1e9f, -1e9f, -1e9f}};
+  for (std::size_t i = 0; i < scene.positions.size(); ++i) {
+    box.lower[i % 3] = std::min(box.lower[i % 3], scene.positions[i]);
+    box.upper[i % 3] = std::max(box.upper[i % 3], scene.positions[i]);
+  }
+  return box;
+}
+
+/* ------------------------------------------------------------------------------------------------- the solver --- */
+
+void scalar_multiplier(Setup &setup) { setup.def.multiplier = LOAM_MULTIPLIER_SCALAR; }
+void no_position_correction(Setup &setup) { setup.def.minimum_distance = 0; }
+void no_velocity_smoothing(Setup &setup) { setup.def.velocity_smoothing = 0; }
+void jacobi(Setup &setup) { setup.def.solver = LOAM_SOLVER_JACOBI; }
+void sleep_allowed(Setup &setup) { setup.def.sleep_speed = 1e-9f; /* as good as never: what watching costs */ }
+
+/* ---------------------------------------------------------------------------------------------- the materials --- */
+
+/* The upper half of the particles is made of something else. */
+template <std::uint32_t Law> void upper_half_of(Setup &setup) {
+  const Box box = bounds(setup.scene);
+  const float middle = 0.5f * (box.lower[1] + box.upper[1]);
+  std::vector<float> upper, lower;
+  for (std::size_t i = 0; i < setup.scene.positions.size(); i += 3) {
+    std::vector<float> &half = setup.scene.positions[i + 1] > middle ? upper : lower;
+    half.insert(half.end(), setup.scene.positions.begin() + std::ptrdiff_t(i),
+                setup.scene.positions.begin() + std::ptrdiff_t(i) + 3);
+  }
+  setup.scene.positions = lower;
+  setup.scene.velocities.clear();
+  setup.additions.push_back([upper](loam_world *world, loam_material_id) {
+    loam_material_def def;
+    require(loam_material_def_default(Law, &def, sizeof def), "loam_material_def_default");
+    loam_material_id material;
+    require(loam_material_create(world, &def, &material), "loam_material_create");
+    loam_particles_def particles;
+    require(loam_particles_def_default(&particles, sizeof particles), "loam_particles_def_default");
+    particles.material = material;
+    particles.count = upper.size() / 3;
+    particles.positions = upper.data();
+    require(loam_particles_add(world, &particles, nullptr), "loam_particles_add");
+  });
+}
+
+void two_sands(Setup &setup) { upper_half_of<LOAM_LAW_DRUCKER_PRAGER>(setup); }
+
+/* The second material is the one after the scene's. */
+void two_sands_in_contact(Setup &setup) {
+  two_sands(setup);
+  const auto add = setup.additions.back();
+  setup.additions.back() = [add](loam_world *world, loam_material_id sand) {
+    loam_material_def def;
+    require(loam_material_def_default(LOAM_LAW_DRUCKER_PRAGER, &def, sizeof def), "loam_material_def_default");
+    add(world, sand);
+    require(loam_material_set_meeting(world, sand, sand + 1, LOAM_MEETING_CONTACT, 0.5f), "loam_material_set_meeting");
+  };
+}
+
+/* --------------------------------------------------------------------------------------------- the colliders --- */
+
+/* In the middle of the sand's surface, half of it inside. */
+void add_collider(Setup &setup, const std::function<void(loam_collider_def &)> &define, bool moving) {
+  const Box box = bounds(setup.scene);
+  const float x = 0.5f * (box.lower[0] + box.upper[0]), z = 0.5f * (box.lower[2] + box.upper[2]), y = box.upper[1];
+  setup.additions.push_back([=](loam_world *world, loam_material_id) {
+    loam_collider_def def;
+    require(loam_collider_def_default(&def, sizeof def), "loam_collider_def_default");
+    def.position[0] = x;
+    def.position[1] = y + (moving ? 6 : 9) * spacing;
+    def.position[2] = z;
+    define(def);
+    loam_collider_id collider;
+    require(loam_collider_create(world, &def, &collider), "loam_collider_create");
+  });
+}
+
+void sphere(Setup &setup) {
+  add_collider(
+      setup,
+      [](loam_collider_def &def) {
+        def.kind = LOAM_COLLIDER_SPHERE;
+        def.radius = 8 * spacing;
+      },
+      false);
+}
+
+template <int Subdivisions> void ball_of_triangles(Setup &setup) {
+  add_collider(
+      setup,
+      [](loam_collider_def &def) {
+        static const meshes::Mesh ball = meshes::icosphere(8 * spacing, Subdivisions);
+        def.kind = LOAM_COLLIDER_MESH;
+        def.mesh = ball.view();
+      },
+      false);
+}
+
+/* ------------------------------------------------------------------------------------------------- the cloth --- */
+
+/* A sheet of 48 x 48 squares, held at its corners, `height` over the sand. */
+void add_cloth(Setup &setup, float height) {
+  const Box box = bounds(setup.scene);
+  const float x = 0.5f * (box.lower[0] + box.upper[0]), z = 0.5f * (box.lower[2] + box.upper[2]), y = box.upper[1];
+  setup.additions.push_back([=](loam_world *world, loam_material_id) {
+    const cloths::Grid grid(48, 48, 0.45f * spacing);
+    loam_cloth_def def = cloths::definition(grid);
+    def.position[0] = x;
+    def.position[1] = y + height;
+    def.position[2] = z;
+    const cloths::Cloth cloth(world, def);
+    if (height > 0.1f) cloth.attach({grid.at(0, 0), grid.at(48, 0), grid.at(0, 48), grid.at(48, 48)});
+  });
+}
+
+void cloth_far_away(Setup &setup) { add_cloth(setup, 1); }
+void cloth_on_the_sand(Setup &setup) { add_cloth(setup, 0.6f * spacing); }
+
+/* ---------------------------------------------------------------------------------------------- the host's --- */
+
+void kept_frames(Setup &setup) {
+  setup.each_step = [](loam_world *world) {
+    loam_particle_view view;
+    view.struct_size = sizeof view;
+    require(loam_particles_keep(world, &view), "loam_particles_keep");
+  };
+}
+
+void mapped_densities(Setup &setup) {
+  setup.each_step = [](loam_world *world) {
+    loam_particle_view view;
+    view.struct_size = sizeof view;
+    require(loam_particles_map(world, &view), "loam_particles_map");
+    require(loam_particles_unmap(world), "loam_particles_unmap");
+  };
+}
+
+} // namespace
+
+Setup sand_in_a_box(std::size_t particles, std::uint32_t threads) {
+  Setup setup;
+  setup.scene = scenes::jittered_block(scenes::sand(), particles, 0, {spacing});
+  const Box box = bounds(setup.scene);
+  for (const int axis : {0, 2})
+    for (const int side : {-1, 1}) {
+      scenes::Plane wall = {};
+      wall.point[axis] = side < 0 ? box.lower[axis] - 0.5f * spacing : box.upper[axis] + 0.5f * spacing;
+      wall.normal[axis] = float(-side);
+      wall.friction = 0.3f;
+      setup.scene.planes.push_back(wall);
+    }
+  setup.def = scenes::world_def(setup.scene);
+  setup.def.substeps = substeps;
+  setup.def.thread_count = threads;
+  return setup;
+}
+
+std::vector<Effect> all() {
+  return {
+      {"solver", "projected-tensor multiplier", "instead of the scalar one", scalar_multiplier, nullptr},
+      {"solver", "position correction", "", no_position_correction, nullptr},
+      {"solver", "velocity smoothing", "", no_velocity_smoothing, nullptr},
+      {"solver", "Jacobi", "instead of Gauss-Seidel, at as many iterations", nullptr, jacobi},
+      {"solver", "sleep, nothing asleep", "", nullptr, sleep_allowed},
+      {"materials", "a second material of the same law", "half the sand", nullptr, two_sands},
+      {"materials", "contact between two materials", "the halves stay apart", two_sands, two_sands_in_contact},
+      {"materials", "elastic", "half the sand is rubber", two_sands, upper_half_of<LOAM_LAW_ELASTIC>},
+      {"materials", "Von Mises", "half the sand is plasticine", two_sands, upper_half_of<LOAM_LAW_VON_MISES>},
+      {"materials", "NACC", "half the sand is packed snow", two_sands, upper_half_of<LOAM_LAW_NACC>},
+      {"materials", "Herschel-Bulkley", "half the sand is shaving foam", two_sands,
+       upper_half_of<LOAM_LAW_HERSCHEL_BULKLEY>},
+      {"materials", "Stomakhin's snow", "half the sand is snow", two_sands, upper_half_of<LOAM_LAW_STOMAKHIN_SNOW>},
+      {"colliders", "a sphere", "dips into the sand", nullptr, sphere},
+      {"colliders", "a mesh of 1 280 triangles", "the same sphere", nullptr, ball_of_triangles<3>},
+      {"colliders", "a mesh of 20 480 triangles", "the same sphere", nullptr, ball_of_triangles<5>},
+      {"cloth", "cloth, touching nothing", "2 401 vertices, held at its corners", nullptr, cloth_far_away},
+      {"cloth", "cloth on sand", "2 401 vertices, lying on it", nullptr, cloth_on_the_sand},
+      {"host", "densities mapped after every step", "", nullptr, mapped_densities},
+      {"host", "a frame kept after every step", "", nullptr, kept_frames},
+  };
+}
+
+} // namespace loam::effects
