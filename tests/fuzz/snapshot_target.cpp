@@ -5,8 +5,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "scene/snapshot_format.h"
-#include "support/snapshots.h"
+#include "support/forged_snapshot.h"
 #include "target.h"
 
 namespace {
@@ -67,14 +66,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {
       bytes.resize(at);
     }
   }
-  if (bytes.size() >= sizeof(SnapshotHeader)) {
-    SnapshotHeader header;
-    std::memcpy(&header, bytes.data(), sizeof header);
-    header.bytes = bytes.size();
-    std::memcpy(bytes.data(), &header, sizeof header);
-    header.checksum = snapshot_checksum(bytes.data(), bytes.size());
-    std::memcpy(bytes.data(), &header, sizeof header);
-  }
+  snapshots::forge(bytes);
   loam_world *world = subject.world.get();
   if (loam_snapshot_restore(world, bytes.data(), bytes.size()) == LOAM_OK) {
     if (loam_world_step(world, 1e-3f) != LOAM_OK) std::abort();

@@ -2,10 +2,9 @@
  * refused may change the world, and what is accepted can be stepped. */
 #include <gtest/gtest.h>
 
-#include "scene/snapshot_format.h"
 #include "support/cloths.h"
+#include "support/forged_snapshot.h"
 #include "support/hooks.h"
-#include "support/snapshots.h"
 
 namespace loam {
 namespace {
@@ -107,14 +106,7 @@ TEST_F(DamagedSnapshot, AForgedChecksumDoesNotHelp) {
   for (int k = 0; k < tries; ++k) {
     Bytes bytes = damaged(k % 4 == 0 ? 0 : sizeof(SnapshotHeader));
     if (k % 5 == 0) bytes.resize(next() % (bytes.size() + 1));
-    if (bytes.size() >= sizeof(SnapshotHeader)) {
-      SnapshotHeader header;
-      std::memcpy(&header, bytes.data(), sizeof header);
-      header.bytes = bytes.size();
-      std::memcpy(bytes.data(), &header, sizeof header);
-      header.checksum = snapshot_checksum(bytes.data(), bytes.size());
-      std::memcpy(bytes.data(), &header, sizeof header);
-    }
+    snapshots::forge(bytes);
     const loam_status status = restore(bytes);
     if (status == LOAM_OK) {
       ++accepted;
