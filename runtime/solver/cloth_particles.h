@@ -46,10 +46,10 @@ public:
     const auto triangles = static_cast<std::size_t>(sheet.triangle_count);
     const auto vertices = static_cast<std::size_t>(sheet.vertex_count);
     if (bounds_.capacity() < triangles) {
-      bounds_.reserve(triangles);
       keys_.reserve(triangles);
       order_.reserve(triangles);
       ex.reserve_sort(std::max(triangles, static_cast<std::size_t>(particles.capacity)));
+      bounds_.reserve(triangles); // last: it tells that all of them are there, and any may be refused
     }
     counter_.reserve(1);
     touches_.reserve(vertices);

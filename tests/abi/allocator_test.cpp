@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "small_world.h"
+#include "support/cloths.h"
 #include "support/hooks.h"
 
 namespace loam {
@@ -48,6 +49,11 @@ public:
     fill.region.center[1] = 0.1f;
     for (float &half : fill.region.half_extents) half = 0.02f;
     attempt("fill", [&] { return loam_particles_fill(world_, &fill, nullptr); });
+    const cloths::Grid grid(4, 4, 0.005f);
+    loam_cloth_def sheet = cloths::definition(grid);
+    sheet.position[1] = 0.075f; // among the particles
+    loam_cloth_id cloth = 0;
+    attempt("cloth", [&] { return loam_cloth_create(world_, &sheet, &cloth); });
     for (int k = 0; k < 3; ++k) attempt("step", [&] { return loam_world_step(world_, 1e-3f); });
     loam_particle_view view = {};
     view.struct_size = sizeof view;
