@@ -52,11 +52,11 @@ typedef struct loam_collider_def {
   uint32_t reserved; /* 0 */
   loam_mesh mesh;    /* MESH and HULL only, in the collider's own frame; copied */
 
-  /* Each for the kinds that name it. Metres, over 0 and at most 1e8; half_height may be 0. Default 0. */
+  /* Lengths are each for the kinds that name them. Metres, over 0 and at most 1e8; half_height may be 0. Default 0. */
   float radius;
   float half_height;
   float half_extents[3];
-  uint32_t reserved_2;     /* 0 */
+  uint32_t reaction;       /* any kind: 1 if loam_collider_get_reaction will be asked, else 0; default 0 */
   loam_distance_grid grid; /* copied */
 
   float restitution; /* see loam_collider_contact; default 0 */
@@ -110,6 +110,28 @@ LOAM_API loam_status loam_collider_set_contact(loam_world *world, loam_collider_
 /* What holds for a material, or with `material` 0 for all that have no contact of their own. Errors: INVALID_HANDLE, INVALID_ARGUMENT. */
 LOAM_API loam_status loam_collider_get_contact(const loam_world *world, loam_collider_id collider, loam_material_id material,
                                                loam_collider_contact *contact);
+
+/* What matter did to a collider in the last loam_world_step: what a rigid body of the host is to be pushed by. Particles and cloth count that touch it;
+ * not cloth that is attached to it, and not what sleeps: a host that weighs its matter does not let it sleep. */
+typedef struct loam_collider_reaction {
+  uint32_t struct_size; /* set by the caller */
+  uint32_t reserved;    /* 0 */
+
+  /* The momentum that contact took from the matter, kg m/s, in the world's directions. Over the step's seconds it is the mean force. */
+  double impulse[3];
+
+  /* The moment of those impulses about the collider's origin, where it was in each substep, kg m^2/s, in the world's directions. Each acts at the centre of
+   * its particle, half a kernel radius off the surface, or at its vertex: so the moment is what the matter lost. */
+  double torque[3];
+
+  uint64_t contacts; /* contact planes of this collider that pressed on a particle or a vertex in the last substep */
+} loam_collider_reaction;
+
+/* Of a collider whose definition had reaction 1. All 0 before the first step; a step that fails and loam_snapshot_restore leave it as it was. The same bits
+ * for any number of threads. Not in it: what the bounds of speed take (loam_statistics.speed_limited).
+ * Errors: INVALID_HANDLE; INVALID_ARGUMENT, also if reaction was 0. */
+LOAM_API loam_status loam_collider_get_reaction(const loam_world *world, loam_collider_id collider,
+                                                loam_collider_reaction *reaction);
 
 /* What the library found in a collider's mesh. Without a mesh all counts are 0. */
 typedef struct loam_collider_report {

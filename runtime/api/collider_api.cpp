@@ -85,6 +85,15 @@ loam_status loam_collider_get_contact(const loam_world *world, loam_collider_id 
   });
 }
 
+loam_status loam_collider_get_reaction(const loam_world *world, loam_collider_id collider,
+                                       loam_collider_reaction *reaction) {
+  return guarded(world, [&] {
+    check_pointer(world, "world");
+    check_pointer(reaction, "reaction");
+    write_definition(reaction, "reaction", reaction->struct_size, world->collider_reaction(collider));
+  });
+}
+
 loam_status loam_collider_get_report(const loam_world *world, loam_collider_id collider, loam_collider_report *report) {
   return guarded(world, [&] {
     check_pointer(world, "world");

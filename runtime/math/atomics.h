@@ -18,4 +18,13 @@ LOAM_FN int atomic_add(int *address, int amount) {
 #endif
 }
 
+LOAM_FN long long atomic_add(long long *address, long long amount) {
+#if defined(__CUDA_ARCH__)
+  return static_cast<long long>(
+      atomicAdd(reinterpret_cast<unsigned long long *>(address), static_cast<unsigned long long>(amount)));
+#else
+  return std::atomic_ref<long long>(*address).fetch_add(amount, std::memory_order_relaxed);
+#endif
+}
+
 } // namespace loam

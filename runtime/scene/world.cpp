@@ -175,9 +175,10 @@ void loam_world::run_step(float seconds) {
   input_.colliders.clear();
   if (cloths_.any()) index_of_slot_.assign(colliders_.size(), 0);
   for (std::size_t i = 0; i < colliders_.size(); ++i)
-    if (const Collider *c = colliders_.at_index(i); c != nullptr) {
+    if (Collider *c = colliders_.at_index(i); c != nullptr) {
       if (cloths_.any()) index_of_slot_[i] = static_cast<int>(input_.colliders.size());
-      input_.colliders.push_back({c->shape, c->law, c->pose, c->target, c->pairs});
+      input_.colliders.push_back(
+          {c->shape, c->law, c->pose, c->target, c->pairs, c->asks_reaction ? &c->reaction : nullptr});
     }
   cloths_.use_colliders(backend_->cloth(), index_of_slot_);
   try {
@@ -337,8 +338,9 @@ const loam_material_def &loam_world::material(loam_material_id id) const { retur
 
 loam_collider_id loam_world::create_collider(const loam_collider_def &def) {
   check_reserved("reserved", def.reserved);
-  check_reserved("reserved_2", def.reserved_2);
+  check_choice("reaction", def.reaction, 1);
   Collider collider;
+  collider.asks_reaction = def.reaction == 1;
   collider.law = make_contact_law(def.friction, def.restitution, def.stick);
   collider.pose = collider.target = make_pose(def.position, def.rotation);
   (void)colliders_.next_id(); // room for one more
@@ -401,6 +403,18 @@ loam_collider_contact loam_world::contact(loam_collider_id id, loam_material_id 
       if (pair.material == slot) law = pair.law;
   }
   return {sizeof(loam_collider_contact), law.friction, law.restitution, law.stick};
+}
+
+loam_collider_reaction loam_world::collider_reaction(loam_collider_id id) const {
+  const Collider &collider = colliders_.at(id, "collider");
+  if (!collider.asks_reaction)
+    throw Error(LOAM_ERROR_INVALID_ARGUMENT, "collider was made with reaction 0: nothing is kept of what acts on it");
+  const ColliderReaction &r = collider.reaction;
+  return {sizeof(loam_collider_reaction),
+          0,
+          {r.impulse[0], r.impulse[1], r.impulse[2]},
+          {r.torque[0], r.torque[1], r.torque[2]},
+          r.contacts};
 }
 
 loam_collider_report loam_world::collider_report(loam_collider_id id) const { return colliders_.at(id, "collider").report; }

@@ -55,6 +55,7 @@ public:
   void pose_collider(loam_collider_id id, const float position[3], const float rotation[4], bool at_once);
   void set_contact(loam_collider_id id, loam_material_id material, const loam_collider_contact *contact);
   loam_collider_contact contact(loam_collider_id id, loam_material_id material) const;
+  loam_collider_reaction collider_reaction(loam_collider_id id) const;
   loam_collider_report collider_report(loam_collider_id id) const;
 
   loam::ClothScene &cloths() { return cloths_; }
@@ -86,6 +87,8 @@ private:
     int shape = -1; // as the backend numbers them
     loam::ContactLaw law{};
     std::vector<loam::PairLaw> pairs; // materials that have another law
+    bool asks_reaction = false;
+    loam::ColliderReaction reaction{};
     loam::Pose pose{}, target{};
     loam_collider_report report{};
     loam_collider_def def{};          // without mesh and grid

@@ -57,12 +57,19 @@ struct PairLaw {
   ContactLaw law;
 };
 
+// What particles did to a collider in a step.
+struct ColliderReaction {
+  double impulse[3], torque[3]; // the latter about the collider's origin
+  std::uint64_t contacts;       // in the last substep
+};
+
 // A collider during a step: it moves from `start` to `end`.
 struct ColliderState {
   int shape; // as add_shape() answered
   ContactLaw law;
   Pose start, end;
-  std::span<const PairLaw> pairs = {}; // materials that have another law
+  std::span<const PairLaw> pairs = {};  // materials that have another law
+  ColliderReaction *reaction = nullptr; // receives it; null: not asked for
 };
 
 struct StepInput {

@@ -16,6 +16,7 @@
 #include "kernels/cloth/threads.h"
 #include "kernels/cloth/vertices.h"
 #include "kernels/contact/find_contacts.h"
+#include "kernels/contact/reaction.h"
 #include "kernels/contact/solve_contacts.h"
 #include "kernels/contact/sweep_contacts.h"
 #include "kernels/integration/integrate.h"
@@ -47,6 +48,7 @@ public:
   std::uint64_t bytes() const;
   // `hash` with the cloths' state in it; as it is where there are none.
   std::uint64_t hash(std::uint64_t hash);
+  float least_inverse_mass(); // of a vertex that can move; LeastInverseMass::identity() where none can
 
   // What a substep needs to know.
   struct Substep {
@@ -64,7 +66,7 @@ public:
   void solve_contacts(const Substep &substep);
   void solve_particle_contacts(const Substep &substep);
   // After it a cloth's velocities stay.
-  void finish(const Substep &substep, int *speed_limited);
+  void finish(const Substep &substep, int *speed_limited, Reactions reactions);
   void keep_particles_off(const Substep &substep);
   void advance(const Substep &substep);
   std::uint64_t constraint_count() const { return constraints_; }
@@ -341,6 +343,14 @@ template <class Executor> std::uint64_t ClothSolver<Executor>::hash(std::uint64_
   return hash;
 }
 
+template <class Executor> float ClothSolver<Executor>::least_inverse_mass() {
+  float least = LeastInverseMass::identity();
+  for_each_cloth([&](Cloth &cloth) {
+    least = std::min(least, executor_.reduce(cloth.vertex_count, LeastInverseMass{cloth.velocities.data()}));
+  });
+  return least;
+}
+
 // --------------------------------------------------------------------------------------------------- a substep ---
 
 template <class Executor> void ClothSolver<Executor>::find_contacts(const Substep &s) {
@@ -409,7 +419,7 @@ template <class Executor> void ClothSolver<Executor>::solve_particle_contacts(co
   for_each_cloth([&](Cloth &cloth) { cloth.particle_contact.solve(executor_, cloth.sheet(), s.particles, s.seconds); });
 }
 
-template <class Executor> void ClothSolver<Executor>::finish(const Substep &s, int *speed_limited) {
+template <class Executor> void ClothSolver<Executor>::finish(const Substep &s, int *speed_limited, Reactions reactions) {
   for_each_cloth([&](Cloth &cloth) {
     Row *velocities = cloth.velocities.data();
     const float fastest = cloth.reach / s.seconds;
@@ -421,9 +431,12 @@ template <class Executor> void ClothSolver<Executor>::finish(const Substep &s, i
         cloth.particle_contact.keep_off(executor_, cloth.sheet(), s.particles, s.seconds, true);
     executor_.for_each(cloth.contact_count,
                        SolveContactsWithinLimit{{cloth.contacts.data(), velocities, s.seconds}, fastest, speed_limited});
+    reactions.positions = cloth.positions.data();
+    if (reactions.sums != nullptr)
+      executor_.for_each(cloth.contact_count, AddReactions{cloth.contacts.data(), velocities, reactions});
     executor_.for_each(cloth.contact_count,
                        SweepContacts{cloth.contacts.data(), cloth.positions.data(), velocities, s.colliders,
-                                     s.collider_count, s.seconds, 0.05f * cloth.material.thickness});
+                                     s.collider_count, s.seconds, 0.05f * cloth.material.thickness, reactions});
   });
 }
 

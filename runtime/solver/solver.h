@@ -17,6 +17,7 @@
 #include "solver/backend.h"
 #include "solver/cloth_solver.h"
 #include "solver/collider_motion.h"
+#include "solver/collider_reactions.h"
 #include "solver/collider_shapes.h"
 #include "solver/contact_laws.h"
 #include "solver/stages.h"
@@ -176,6 +177,8 @@ private:
   KeptFrame kept_{make_frame()}; // where the host asked for it
   ColliderShapes<Executor> shapes_{executor_};
   ContactLaws<Executor> contact_laws_{executor_};
+  ColliderReactions<Executor> reactions_{executor_};
+  float greatest_mass();
   std::vector<ColliderView> views_, views_before_; // of this substep and the one before
   ColliderMotion collider_motion_;
   bool free_distances_hold_ = false; // what they say was true at the end of views_before_
@@ -429,7 +432,8 @@ template <class Executor> std::vector<MemoryUse> Solver<Executor>::memory() cons
     for (const Array<Row> &column : jacobi_drift_rows_) bytes += column.bytes();
     uses.push_back({"Jacobi solver", bytes});
   }
-  const std::uint64_t colliders = collider_views_.bytes() + contacts_.bytes() + shapes_.bytes() + contact_laws_.bytes();
+  const std::uint64_t colliders =
+      collider_views_.bytes() + contacts_.bytes() + shapes_.bytes() + contact_laws_.bytes() + reactions_.bytes();
   if (colliders > 0) uses.push_back({"colliders", colliders});
   if (cloth_.bytes() > 0) uses.push_back({"cloth", cloth_.bytes()});
   if (settings_.sleep_speed > 0)

@@ -21,6 +21,8 @@ template <class Executor> void Solver<Executor>::step(const StepInput &input) {
   const auto begin = std::chrono::steady_clock::now();
   executor_.lap();
   executor_.session([&] {
+    reactions_.prepare(input.colliders, static_cast<double>(settings_.kernel_radius),
+                       static_cast<double>(input.seconds) / input.substeps, [this] { return greatest_mass(); });
     // Cloth cannot tell whom it touches, so nothing sleeps beside it.
     if ((input.wake || !cloth_.empty()) && schedule_.sleep >= 0) wake_all();
     if (count_ > 0 || !cloth_.empty())
@@ -32,8 +34,17 @@ template <class Executor> void Solver<Executor>::step(const StepInput &input) {
         statistics_.pair_visits += pairs_ * input.iterations;
       }
     finish_statistics(input);
+    reactions_.read(input.colliders);
   });
   statistics_.step_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+// Of what can move. Where nothing can, that of a particle of water.
+template <class Executor> float Solver<Executor>::greatest_mass() {
+  const float r = settings_.kernel_radius,
+              least =
+                  std::min(executor_.reduce(count_, LeastInverseMass{now_.velocities.data()}), cloth_.least_inverse_mass());
+  return least < LeastInverseMass::identity() ? 1.0f / least : 1000.0f * r * r * r;
 }
 
 template <class Executor> void Solver<Executor>::compile_schedule(bool colliders) {

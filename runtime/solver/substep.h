@@ -46,7 +46,7 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
   ex.for_each(count_, LimitSpeed{now_.velocities.data(), settings_.kernel_radius / h_, counters_.data()});
   lap(schedule_.speed_limit, particles());
   if (!cloth_.empty()) {
-    cloth_.finish(cloth_substep(input), counters_.data());
+    cloth_.finish(cloth_substep(input), counters_.data(), reactions_.view(nullptr, collider_views_.data(), last));
     lap(schedule_.finish_cloth, cloth_.vertex_count());
   }
   if (contact_count_ > 0)
@@ -58,8 +58,10 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
   if (contact_count_ > 0) {
     const float margin = 0.05f * 0.5f * settings_.kernel_radius;
     const int colliders = static_cast<int>(input.colliders.size());
+    const Reactions reactions = reactions_.view(now_.positions.data(), collider_views_.data(), last);
+    if (reactions_.any()) ex.for_each(contact_count_, AddReactions{contacts_.data(), now_.velocities.data(), reactions});
     ex.for_each(contact_count_, SweepContacts{contacts_.data(), now_.positions.data(), now_.velocities.data(),
-                                              collider_views_.data(), colliders, h_, margin});
+                                              collider_views_.data(), colliders, h_, margin, reactions});
     lap(schedule_.final_contacts, static_cast<std::uint64_t>(contact_count_));
   }
 

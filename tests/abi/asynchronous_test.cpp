@@ -229,6 +229,7 @@ TEST_F(SmallWorld, EveryFunctionSaysWhetherItMayBeCalledDuringAStep) {
       {"loam_collider_move", [&] { return loam_collider_move(w, collider_, vector, vector); }},
       {"loam_collider_place", [&] { return loam_collider_place(w, collider_, vector, vector); }},
       {"loam_collider_get_report", [&] { return loam_collider_get_report(w, collider_, &report); }},
+      {"loam_collider_get_reaction", [&] { return loam_collider_get_reaction(w, collider_, nullptr); }},
       {"loam_collider_set_contact", [&] { return loam_collider_set_contact(w, collider_, 0, nullptr); }},
       {"loam_collider_get_contact", [&] { return loam_collider_get_contact(w, collider_, 0, nullptr); }},
       {"loam_cloth_create", [&] { return loam_cloth_create(w, &cloth, &id); }},

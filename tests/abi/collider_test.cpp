@@ -105,8 +105,8 @@ TEST_F(Colliders, EveryFieldHasItsRange) {
   def.reserved = 7;
   refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"reserved", "7"});
   def = plane();
-  def.reserved_2 = 7;
-  refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"reserved_2", "7"});
+  def.reaction = 2;
+  refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"reaction", "2"});
 }
 
 TEST_F(Colliders, EverySizeOfASolidHasItsRange) {
@@ -278,6 +278,32 @@ TEST_F(Colliders, ContactsAreChecked) {
     with("stick", [=](loam_collider_contact &contact) { contact.stick = bad; });
   }
   with("restitution", [](loam_collider_contact &contact) { contact.restitution = 1.01f; });
+}
+
+TEST_F(Colliders, AReactionIsOfThoseThatWereMadeForIt) {
+  loam_collider_def def = plane();
+  def.reaction = 1;
+  loam_collider_id id = 0;
+  const std::uint64_t before = world_.memory_bytes();
+  ASSERT_EQ(loam_collider_create(world(), &def, &id), LOAM_OK);
+  loam_collider_reaction reaction = {};
+  reaction.struct_size = sizeof reaction;
+  ASSERT_EQ(scenes::outcome(loam_collider_get_reaction(world(), id, &reaction)), "LOAM_OK");
+  EXPECT_EQ(reaction.impulse[1], 0.0);
+  EXPECT_EQ(reaction.contacts, 0u);
+  world_.step(1e-3f);
+  ASSERT_EQ(loam_collider_get_reaction(world(), id, &reaction), LOAM_OK);
+  EXPECT_GT(world_.memory_bytes(), before);
+  invalid({"collider", "reaction 0"}, [&] { return loam_collider_get_reaction(world(), collider_, &reaction); });
+  invalid({"world is null"}, [&] { return loam_collider_get_reaction(nullptr, id, &reaction); });
+  invalid({"reaction is null"}, [&] { return loam_collider_get_reaction(world(), id, nullptr); });
+  for (const std::uint32_t size : wrong_sizes(sizeof reaction)) {
+    reaction.struct_size = size;
+    invalid({"reaction", std::to_string(size)}, [&] { return loam_collider_get_reaction(world(), id, &reaction); });
+  }
+  reaction.struct_size = sizeof reaction;
+  ASSERT_EQ(loam_collider_destroy(world(), id), LOAM_OK);
+  refused(LOAM_ERROR_INVALID_HANDLE, {"collider"}, [&] { return loam_collider_get_reaction(world(), id, &reaction); });
 }
 
 /* A host of the first version: its definition ends before the fields of solids. */

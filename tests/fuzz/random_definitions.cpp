@@ -244,6 +244,7 @@ loam_collider_def random_collider(Random &random, float r, ColliderArrays &array
     def.rotation[3] = 1;
   }
   def.friction = random.chance(0.2) ? 0.0f : random.log_between(0.05, 100);
+  def.reaction = random.chance(0.3) ? 1 : 0;
   if (random.chance(0.2)) def.restitution = random.between(0, 1);
   if (random.chance(0.2)) def.stick = random.log_between(1, 1e9);
   if (random.chance(0.2)) return def;
@@ -289,7 +290,7 @@ void spoil(loam_collider_def &def, Random &random, ColliderArrays &arrays) {
     def.kind = LOAM_COLLIDER_GRID + 1 + random.below(3);
     break;
   case 5:
-    (random.chance(0.5) ? def.reserved : def.reserved_2) = 1;
+    (random.chance(0.5) ? def.reserved : def.reaction) = 2;
     break;
   case 6:
     def.struct_size = random.chance(0.5) ? 4 : std::uint32_t(sizeof def) + 8;

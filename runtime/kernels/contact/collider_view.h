@@ -33,6 +33,7 @@ struct ContactPlane {
   float gap;
   Vec3<float> surface_velocity; // of the collider at the contact point, for friction
   float friction;
+  int collider;
   float hold; // the plane may pull by so much, as a velocity change: 0 unless it is sticky
 };
 

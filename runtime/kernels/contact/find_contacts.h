@@ -136,6 +136,7 @@ private:
     const float missing = minimum(stand_off - distance, stand_off);
     const float recovery = minimum(contact_recovery_share, substep / contact_recovery_time);
     ContactPlane plane;
+    plane.collider = local.collider;
     plane.normal = rotate(collider.end.rotation, normal);
     plane.gap = (missing > 0.0f ? 0.0f - recovery * missing : 0.0f - missing) - dot(plane.normal, local.shift);
     plane.surface_velocity = (1.0f / substep) * carried(collider, point);

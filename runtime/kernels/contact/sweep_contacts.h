@@ -12,6 +12,7 @@
 
 #include "kernels/contact/collider_view.h"
 #include "kernels/contact/mesh_query.h"
+#include "kernels/contact/reaction.h"
 
 namespace loam {
 
@@ -23,6 +24,7 @@ struct SweepContacts {
   int collider_count;
   float substep;
   float margin; // a small share of the stand-off
+  Reactions reactions = {};
 
   LOAM_FN void operator()(int index) const {
     const Contact &contact = contacts[index];
@@ -43,8 +45,10 @@ struct SweepContacts {
         for (int i = 0; i < collider_count; ++i) {
           const ColliderView &collider = colliders[i];
           if (at_rest(collider) != (pass == 1)) continue;
+          const Vec3<float> before = motion;
           const bool shortened =
               is_convex(collider.shape) ? keep_beyond(collider, x, motion) : keep_off(collider, x, motion);
+          if (shortened) reactions.add(i, contact.particle, row.w, (1.0f / substep) * (motion - before), false);
           changed = changed || shortened;
         }
       }
