@@ -43,6 +43,16 @@ void add_snapshots(const std::string &name, const loam_material_def &material) {
     }
 }
 
+void add_cloth(std::uint32_t vertices_a_side, std::uint32_t threads) {
+  const std::string size = std::to_string(vertices_a_side) + "x" + std::to_string(vertices_a_side);
+  benchmark::RegisterBenchmark(
+      ("cloth/" + size + "/threads:" + std::to_string(threads)).c_str(),
+      [=](benchmark::State &state) { run_cloth(state, vertices_a_side, threads, LOAM_INSTRUCTION_SET_AUTO); })
+      ->UseManualTime()
+      ->Unit(benchmark::kMillisecond)
+      ->Iterations(60);
+}
+
 void add_cases() {
   constexpr std::size_t small = 8192, medium = 65536, large = 262144;
 
@@ -89,6 +99,8 @@ void add_cases() {
     other.material = material;
     add_library(other);
   }
+
+  for (std::uint32_t threads = 1; threads <= most_threads; ++threads) add_cloth(200, threads);
 
   add_snapshots("sand", scenes::sand());
   add_snapshots("rubber", scenes::rubber());

@@ -100,7 +100,8 @@ int run(const Options &options) {
       if (due(frame, options.ply_every))
         output.write(fmt::format("frame_{:04}.ply", frame), make_ply(particles, fmt::format("time {:.6f} s", record.time)));
       if (renderer && due(frame, options.picture_every))
-        output.write(fmt::format("frame_{:04}.png", frame), make_png(renderer->render(particles, record.time)));
+        output.write(fmt::format("frame_{:04}.png", frame),
+                     make_png(renderer->render(particles, simulation.read_cloths(), record.time)));
 
       progress.show(frame, scene.watch ? fmt::format("{} left above", record.watched)
                                        : fmt::format("mean speed {:.3g} m/s", record.statistics.mean_speed));

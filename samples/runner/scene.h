@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -62,6 +63,7 @@ enum class Appearance { hidden, glass, matte, wood, metal, glossy, tiles };
 
 struct SceneCollider {
   Place place;
+  std::string name; // by which cloths are attached to it; empty: none
   std::uint32_t kind = LOAM_COLLIDER_PLANE;
   std::filesystem::path file; // of all but PLANE: the key in Scene::meshes of what it is, or of what is shown for it
   float radius = 0, half_height = 0;
@@ -72,6 +74,27 @@ struct SceneCollider {
   float friction = 0;
   Appearance appearance = Appearance::matte;
   Vector3 colour = {0.5f, 0.5f, 0.5f};
+};
+
+// Vertices of a cloth that are held.
+struct SceneAttachment {
+  Place place;
+  std::vector<std::uint32_t> vertices;
+  std::optional<std::size_t> collider; // by its place in the scene; none: space
+  float compliance = 0;
+  double release = std::numeric_limits<double>::infinity(); // seconds: when they are let go of
+};
+
+struct SceneCloth {
+  Place place;
+  std::filesystem::path file; // the key in Scene::meshes
+  loam_cloth_def def{};       // without the mesh
+  std::vector<SceneAttachment> attachments;
+  Place wind_place;
+  Vector3 wind_velocity;
+  float drag = 0, lift = 0;
+  Appearance appearance = Appearance::matte; // or hidden or glossy
+  Vector3 colour = {0.55f, 0.53f, 0.50f};
 };
 
 // An upright cylinder with rounded edges that is only looked at.
@@ -123,11 +146,12 @@ struct Scene {
   std::vector<SceneContact> contacts; // of pairs that are named twice, the last holds
   std::vector<SceneEmitter> emitters;
   std::vector<SceneCollider> colliders;
+  std::vector<SceneCloth> cloths;
   std::vector<SceneDecoration> decorations;
   std::optional<SceneWatch> watch;
   std::optional<SceneCamera> camera; // without one there are no pictures
   SceneLight light;
-  std::map<std::filesystem::path, Mesh> meshes; // every file that a region or a collider names
+  std::map<std::filesystem::path, Mesh> meshes; // every file that a region, a collider or a cloth names
 };
 
 } // namespace runner

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "cloth_reader.h"
 #include "collider_meshes.h"
 #include "distance_field.h"
 #include "error.h"
@@ -59,13 +60,16 @@ public:
     for (TomlTable &table : root.tables("contacts")) read_contact(table);
     for (TomlTable &table : root.tables("emitters")) read_emitter(table);
     for (TomlTable &table : root.tables("colliders")) read_collider(table);
+    for (TomlTable &table : root.tables("cloths")) read_cloth(table);
     for (TomlTable &table : root.tables("decorations")) read_decoration(table);
     read_watch(root);
     read_camera(root);
     read_light(root);
     root.finish();
-    if (scene_.materials.empty()) root.fail("materials", "the scene has no material ([[materials]])");
-    if (scene_.emitters.empty()) root.fail("emitters", "the scene has no emitter ([[emitters]])");
+    if (scene_.cloths.empty() && scene_.materials.empty())
+      root.fail("materials", "the scene has no material ([[materials]])");
+    if (scene_.cloths.empty() && scene_.emitters.empty())
+      root.fail("emitters", "the scene has no emitter ([[emitters]]) and no cloth ([[cloths]])");
     return std::move(scene_);
   }
 
@@ -197,6 +201,10 @@ private:
     loam_collider_def def{};
     expect_ok(loam_collider_def_default(&def, sizeof def), "loam_collider_def_default");
     collider.friction = def.friction;
+    table.read("name", collider.name);
+    for (const SceneCollider &other : scene_.colliders)
+      if (table.has("name") && other.name == collider.name)
+        table.fail("name", fmt::format("there is a collider \"{}\" already", collider.name));
     table.require("kind");
     table.read("kind", collider.kind, collider_kinds);
     read_shape(table, collider);
@@ -275,6 +283,36 @@ private:
     motion.spin = degrees_per_second * std::numbers::pi / 180;
     table.finish();
     return motion;
+  }
+
+  void read_cloth(TomlTable &table) {
+    SceneCloth cloth;
+    cloth.place = table.place();
+    expect_ok(loam_cloth_def_default(&cloth.def, sizeof cloth.def), "loam_cloth_def_default");
+    if (table.has("file") == table.has("grid")) table.fail("file", "a cloth has either a mesh (file) or a grid");
+    if (std::optional<TomlTable> grid = table.table("grid")) {
+      std::uint32_t columns = 0, rows = 0;
+      float spacing = 0;
+      for (const char *key : {"columns", "rows", "spacing"}) grid->require(key);
+      grid->read("columns", columns);
+      grid->read("rows", rows);
+      grid->read("spacing", spacing);
+      if (columns < 1 || columns > 2000) grid->fail("columns", "must be between 1 and 2000");
+      if (rows < 1 || rows > 2000) grid->fail("rows", "must be between 1 and 2000");
+      if (!(spacing > 0)) grid->fail("spacing", "must be over 0");
+      grid->finish();
+      cloth.file = fmt::format("the grid of {}", cloth.place.key); // a name that no file has
+      scene_.meshes.emplace(cloth.file, make_grid(columns, rows, spacing));
+    } else {
+      cloth.file = read_mesh(table);
+    }
+    Vector3 position;
+    table.read("position", position);
+    for (int axis = 0; axis < 3; ++axis) cloth.def.position[axis] = position[axis];
+    const std::array<float, 4> rotation = read_rotation(table);
+    std::copy(rotation.begin(), rotation.end(), cloth.def.rotation);
+    runner::read_cloth(table, scene_, scene_.meshes.at(cloth.file), cloth);
+    scene_.cloths.push_back(std::move(cloth));
   }
 
   void read_decoration(TomlTable &table) {

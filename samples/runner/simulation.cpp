@@ -69,8 +69,10 @@ Simulation::Simulation(const Scene &scene) : scene_(&scene) {
       throw Error(fmt::format("{}: more particles than a world can hold", scene.path.string()));
     capacity *= 4;
   }
-  if (particle_count_ == 0) throw Error(fmt::format("{}: the emitters made no particles", scene.path.string()));
-  if (!build(particle_count_)) throw Error(fmt::format("{}: the emitters do not repeat themselves", scene.path.string()));
+  if (particle_count_ == 0 && !scene.emitters.empty())
+    throw Error(fmt::format("{}: the emitters made no particles", scene.path.string()));
+  if (!build(std::max<std::uint64_t>(particle_count_, 1)))
+    throw Error(fmt::format("{}: the emitters do not repeat themselves", scene.path.string()));
 }
 
 void Simulation::check(loam_status status, const Place &place) const {
@@ -85,6 +87,7 @@ bool Simulation::build(std::uint64_t particle_capacity) {
   world_.reset();
   material_ids_.clear();
   collider_ids_.clear();
+  cloth_ids_.clear();
   emitter_ends_.clear();
   particle_count_ = 0;
 
@@ -144,7 +147,40 @@ bool Simulation::build(std::uint64_t particle_capacity) {
     particle_count_ += count;
     emitter_ends_.push_back(particle_count_);
   }
+  make_cloths();
   return true;
+}
+
+void Simulation::make_cloths() {
+  loam_world *world = world_.get();
+  for (const SceneCloth &cloth : scene_->cloths) {
+    loam_cloth_def def = cloth.def;
+    def.mesh = describe(scene_->meshes.at(cloth.file));
+    loam_cloth_id id = 0;
+    check(loam_cloth_create(world, &def, &id), cloth.place);
+    cloth_ids_.push_back(id);
+    for (const SceneAttachment &attachment : cloth.attachments) {
+      loam_cloth_attachment_def held{};
+      check(loam_cloth_attachment_def_default(&held, sizeof held), attachment.place);
+      held.count = static_cast<std::uint32_t>(attachment.vertices.size());
+      held.vertices = attachment.vertices.data();
+      held.compliance = attachment.compliance;
+      if (attachment.collider) held.collider = collider_ids_[*attachment.collider];
+      check(loam_cloth_attach(world, id, &held), attachment.place);
+    }
+    check(loam_cloth_set_wind(world, id, &cloth.wind_velocity.x, cloth.drag, cloth.lift), cloth.wind_place);
+  }
+}
+
+void Simulation::release_attachments(double end) {
+  for (std::size_t i = 0; i < scene_->cloths.size(); ++i)
+    for (const SceneAttachment &attachment : scene_->cloths[i].attachments) {
+      const double before = end - 1.0 / scene_->frame_rate;
+      if (!(attachment.release < end && (attachment.release >= before || frame_ == 0))) continue;
+      check(loam_cloth_release(world_.get(), cloth_ids_[i], attachment.vertices.data(),
+                               static_cast<std::uint32_t>(attachment.vertices.size())),
+            attachment.place);
+    }
 }
 
 void Simulation::step() {
@@ -155,6 +191,7 @@ void Simulation::step() {
     const Pose pose = pose_at(collider.pose, collider.motions, end);
     check(loam_collider_move(world_.get(), collider_ids_[i], &pose.position.x, pose.rotation.data()), collider.place);
   }
+  release_attachments(end);
   check(loam_world_step(world_.get(), static_cast<float>(1.0 / scene_->frame_rate)), {});
   ++frame_;
 }
@@ -190,6 +227,23 @@ Particles Simulation::read_particles() const {
     result.materials.push_back(static_cast<std::uint32_t>(material - material_ids_.begin()));
     const auto emitter = std::upper_bound(emitter_ends_.begin(), emitter_ends_.end(), std::uint64_t(ids[i]));
     result.emitters.push_back(static_cast<std::uint32_t>(emitter - emitter_ends_.begin()));
+  }
+  return result;
+}
+
+std::vector<Mesh> Simulation::read_cloths() const {
+  std::vector<Mesh> result;
+  for (std::size_t i = 0; i < cloth_ids_.size(); ++i) {
+    loam_cloth_view view{};
+    view.struct_size = sizeof view;
+    check(loam_cloth_map(world_.get(), cloth_ids_[i], &view), scene_->cloths[i].place);
+    const std::vector<float> positions = copy_to_host(view.positions, 4 * std::size_t(view.vertex_count), view.memory);
+    Mesh mesh;
+    mesh.indices = scene_->meshes.at(scene_->cloths[i].file).indices;
+    check(loam_cloth_unmap(world_.get(), cloth_ids_[i]), scene_->cloths[i].place);
+    for (std::size_t v = 0; v < positions.size(); v += 4)
+      mesh.vertices.push_back({positions[v], positions[v + 1], positions[v + 2]});
+    result.push_back(std::move(mesh));
   }
   return result;
 }

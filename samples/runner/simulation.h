@@ -8,6 +8,7 @@
 
 #include <loam/loam.h>
 
+#include "mesh.h"
 #include "particles.h"
 #include "scene.h"
 
@@ -22,6 +23,8 @@ public:
   void step();
 
   Particles read_particles() const;
+  // Each cloth of the scene as it lies now.
+  std::vector<Mesh> read_cloths() const;
   loam_statistics statistics() const;
   std::vector<loam_stage> stages() const;
   std::vector<loam_memory> memory() const;
@@ -37,12 +40,16 @@ private:
 
   // Makes the world with room for so many particles and fills it. Returns false if that was too few.
   bool build(std::uint64_t particle_capacity);
+  void make_cloths();
+  // Of those whose time has come within a frame that ends at `end`.
+  void release_attachments(double end);
   void check(loam_status status, const Place &place) const;
 
   const Scene *scene_;
   std::unique_ptr<loam_world, Destroy> world_;
   std::vector<std::uint32_t> material_ids_; // the lower 32 bits, by index in the scene
   std::vector<loam_collider_id> collider_ids_;
+  std::vector<loam_cloth_id> cloth_ids_;
   std::vector<std::uint64_t> emitter_ends_; // of each emitter the id after its last particle's
   std::uint64_t frame_ = 0;
   std::uint64_t particle_count_ = 0;

@@ -294,4 +294,54 @@ TEST(RunnerSceneReader, ReadsContactsAndRefusesThoseOfNobody) {
   expect_mentions(scene_error(replaced(two, "friction = 0.4", "frction = 0.4")), {"scene.toml:17:", "unknown key"});
 }
 
+const std::string hammock = "[[colliders]]\nname = \"bar\"\nkind = \"sphere\"\nradius = 0.1\n" // line 1
+                            "[[cloths]]\n"                                                     // line 5
+                            "grid = { columns = 4, rows = 2, spacing = 0.5 }\n"
+                            "stretch_stiffness = 500\n"
+                            "wind = { velocity = [1, 2, 3], drag = 0.5 }\n"
+                            "attachments = [{ low = [-2, 0, -2], high = [-0.9, 0, 2], collider = \"bar\", release = 3 },\n"
+                            "               { low = [0.9, 0, -2], high = [2, 0, 2], compliance = 0.1 }]\n";
+
+TEST(RunnerSceneReader, ReadsClothsAndWhatHoldsThem) {
+  const TemporaryFolder folder;
+  const runner::Scene scene = runner::read_scene(folder.write("scene.toml", hammock));
+  ASSERT_EQ(scene.cloths.size(), 1u);
+  const runner::SceneCloth &cloth = scene.cloths[0];
+  EXPECT_EQ(scene.meshes.at(cloth.file).triangle_count(), 16u);
+  EXPECT_EQ(cloth.def.stretch_stiffness, 500.0f);
+  EXPECT_EQ(cloth.wind_velocity.z, 3.0f);
+  EXPECT_EQ(cloth.drag, 0.5f);
+  ASSERT_EQ(cloth.attachments.size(), 2u);
+  EXPECT_EQ(cloth.attachments[0].vertices, (std::vector<std::uint32_t>{0, 5, 10}));
+  EXPECT_EQ(cloth.attachments[0].collider, std::optional<std::size_t>(0));
+  EXPECT_EQ(cloth.attachments[0].release, 3);
+  EXPECT_EQ(cloth.attachments[1].vertices, (std::vector<std::uint32_t>{4, 9, 14}));
+  EXPECT_FALSE(cloth.attachments[1].collider.has_value());
+  folder.write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::string meshed_text =
+      replaced(hammock, "grid = { columns = 4, rows = 2, spacing = 0.5 }", "file = \"sheet.obj\"");
+  const runner::Scene meshed =
+      runner::read_scene(folder.write("scene.toml", meshed_text.substr(0, meshed_text.find("attachments"))));
+  EXPECT_EQ(meshed.meshes.at(meshed.cloths[0].file).vertices.size(), 3u);
+}
+
+TEST(RunnerSceneReader, RefusesClothsThatCannotBe) {
+  const auto error = [](const std::string &from, const std::string &to) { return scene_error(replaced(hammock, from, to)); };
+  expect_mentions(error("grid = { columns = 4, rows = 2, spacing = 0.5 }\n", ""),
+                  {"scene.toml:5:", "mesh (file) or a grid"});
+  expect_mentions(error("stretch_st", "file = \"a.obj\"\nstretch_st"), {"cloths[0].file", "mesh (file) or a grid"});
+  expect_mentions(error("columns = 4", "columns = 0"), {"scene.toml:6:", "grid.columns", "1 and 2000"});
+  expect_mentions(error(", rows = 2", ""), {"scene.toml:6:", "rows", "missing"});
+  expect_mentions(error("0.5 }", "-1 }"), {"scene.toml:6:", "spacing", "over 0"});
+  expect_mentions(error("stretch_stiffness", "strech_stiffness"),
+                  {"scene.toml:7:", "cloths[0].strech_stiffness", "unknown"});
+  expect_mentions(error("drag", "drg"), {"scene.toml:8:", "wind.drg", "unknown key"});
+  expect_mentions(error("[-0.9, 0, 2]", "[-3, 0, 2]"), {"scene.toml:9:", "attachments[0].low", "no vertex"});
+  expect_mentions(error("collider = \"bar\"", "collider = \"bra\""), {"scene.toml:9:", "no collider", "bra"});
+  expect_mentions(error("release = 3", "release = -3"), {"scene.toml:9:", "release", "0 or more"});
+  expect_mentions(error("low = [0.9, 0, -2], ", ""), {"scene.toml:10:", "attachments[1].low", "missing"});
+  expect_mentions(scene_error(hammock + "[[colliders]]\nname = \"bar\"\nkind = \"plane\"\n"),
+                  {"scene.toml:12:", "colliders[1].name", "already"});
+}
+
 } // namespace

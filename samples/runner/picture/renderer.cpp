@@ -36,6 +36,8 @@ Renderer::Renderer(const Scene &scene, const Particles &start)
                             : rays_.add_surface(look == Look::glossy ? Appearance::glossy : Appearance::matte,
                                                 emitter.colour, 0.2f * scene.world.kernel_radius));
   }
+  for (const SceneCloth &cloth : scene.cloths)
+    sheets_.push_back(cloth.appearance == Appearance::hidden ? none : rays_.add_surface(cloth.appearance, cloth.colour, 0));
   in_band_.resize(start.ids.empty() ? 0 : start.ids.back() + std::size_t(1));
   for (std::size_t i = 0; i < start.count(); ++i) {
     const float height = scene.emitters[start.emitters[i]].band_height;
@@ -44,7 +46,8 @@ Renderer::Renderer(const Scene &scene, const Particles &start)
   }
 }
 
-Image Renderer::render(const Particles &particles, double time) {
+Image Renderer::render(const Particles &particles, const std::vector<Mesh> &cloths, double time) {
+  place_cloths(cloths);
   place_particles(particles, time);
   if (rays_.ground()) ground_light_.emplace(rays_, environment_);
 
@@ -88,6 +91,11 @@ Image Renderer::render(const Particles &particles, double time) {
           static_cast<std::uint8_t>(std::clamp(255 * colour[channel] + 0.5f + dither, 0.0f, 255.0f));
   });
   return image;
+}
+
+void Renderer::place_cloths(const std::vector<Mesh> &cloths) {
+  for (std::size_t i = 0; i < cloths.size(); ++i)
+    if (sheets_[i] != none) rays_.set_surface(sheets_[i], cloths[i]);
 }
 
 void Renderer::place_particles(const Particles &particles, double time) {

@@ -23,8 +23,8 @@ public:
   // `start` are the particles before the first step.
   Renderer(const Scene &scene, const Particles &start);
 
-  // `time` in seconds says where moving colliders are.
-  Image render(const Particles &particles, double time);
+  // `cloths` are those of the scene; `time` in seconds says where moving colliders are.
+  Image render(const Particles &particles, const std::vector<Mesh> &cloths, double time);
 
 private:
   struct Sample {
@@ -36,6 +36,7 @@ private:
     Vector3 normal;
   };
 
+  void place_cloths(const std::vector<Mesh> &cloths);
   void place_particles(const Particles &particles, double time);
   // A ray through the picture at x, y, which lies in the pixel.
   Sample sample(float x, float y, std::size_t pixel, float noise);
@@ -57,6 +58,7 @@ private:
   StillLayer still_;
   std::optional<GroundLight> ground_light_;
   std::vector<std::uint32_t> surfaces_; // of each emitter the solid that stands for its particles, or `none`
+  std::vector<std::uint32_t> sheets_;   // of each cloth its solid, or `none`
   std::vector<std::uint8_t> in_band_;   // by particle id: has it the emitter's band colour?
   std::vector<float> radii_;            // of the particles that are shown one by one, as all that follows
   std::vector<Vector3> colours_;
