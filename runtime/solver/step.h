@@ -144,7 +144,13 @@ template <class Executor> void Solver<Executor>::search_neighbours() {
                          static_cast<unsigned long long>(pairs), static_cast<unsigned long long>(most)));
     pairs_ = pairs;
   };
-  ex.find_neighbours(table_, test, neighbour_counts_.data(), close_counts_.data(), check, schedule_);
+  try {
+    ex.find_neighbours(table_, test, neighbour_counts_.data(), close_counts_.data(), check, schedule_);
+  } catch (...) {
+    // Memory for the lists was refused, or they are too long: what sleeps has its mass back.
+    if (schedule_.sleep >= 0) ex.for_each(count_, HoldSleepers{now_.velocities.data(), now_.rests.data()});
+    throw;
+  }
 
   const auto gradients = [&](auto non_affine, const Meetings &meetings) {
     return ComputeGradients<non_affine.value>{now_.positions.data(),

@@ -141,6 +141,42 @@ TEST(AllocatorHook, AWorldThatCannotBeMadeLeavesNothingBehind) {
   }
 }
 
+/* Sleepers are pinned within a substep. One that needs more lists than it may have leaves them their masses. */
+TEST(AllocatorHook, ASleeperKeepsItsMassWhenTheListsDoNotFit) {
+  const scenes::Scene scene = scenes::resting_pile(scenes::sand(), 5);
+  loam_world_def def = scenes::world_def(scene);
+  def.particle_capacity += 500;
+  def.sleep_speed = 1;
+  def.sleep_delay = 0.01f;
+  const auto fill = [](scenes::World &world, float x) {
+    loam_material_def sand = scenes::sand();
+    loam_material_id material = 0;
+    scenes::require(loam_material_create(world.get(), &sand, &material), "loam_material_create");
+    loam_fill_def block;
+    scenes::require(loam_fill_def_default(&block, sizeof block), "loam_fill_def_default");
+    block.material = material;
+    block.region.kind = LOAM_REGION_BOX;
+    block.region.center[0] = x;
+    block.region.center[1] = 0.05f;
+    for (float &half : block.region.half_extents) half = 0.025f;
+    return loam_particles_fill(world.get(), &block, nullptr);
+  };
+  std::uint64_t pairs = 0;
+  {
+    scenes::World world(def, scene);
+    world.step(0.05f);
+    pairs = world.statistics().pairs_peak;
+  }
+  def.pair_capacity = pairs + 200; // not enough for the block too
+  scenes::World world(def, scene);
+  world.step(0.05f);
+  ASSERT_EQ(world.statistics().sleeping, scene.count());
+  ASSERT_EQ(fill(world, 2), LOAM_OK);
+  EXPECT_EQ(loam_world_step(world.get(), 0.01f), LOAM_ERROR_CAPACITY);
+  const scenes::Snapshot now = world.snapshot();
+  for (std::size_t i = 0; i < now.count(); ++i) ASSERT_GT(now.inverse_masses[i], 0) << i;
+}
+
 /* A settled scene takes no memory: what it needs, it has. */
 TEST(AllocatorHook, TheSteadyStateTakesNoMemory) {
   Allocator allocator;
