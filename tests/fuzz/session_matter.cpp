@@ -74,13 +74,20 @@ void Session::destroy_material(Random &random) {
   now_.materials.erase(now_.materials.begin() + std::ptrdiff_t(which));
 }
 
+/* A kernel radius of kilometres puts some places farther out than a collider may be. */
+static bool is_in_range(const float position[3]) {
+  return std::all_of(position, position + 3, [](float x) { return std::fabs(x) <= 1e9f; });
+}
+
 void Session::create_collider(Random &random) {
   ColliderArrays arrays;
   const loam_collider_def def = random_collider(random, def_.kernel_radius, arrays);
   loam_collider_id id = 0;
   const bool arrays_may_be_refused = // slivers may leave no triangle
       def.kind == LOAM_COLLIDER_MESH || def.kind == LOAM_COLLIDER_HULL || def.kind == LOAM_COLLIDER_GRID;
-  const Expect expect = arrays_may_be_refused ? Expect::anything : Expect::success;
+  const Expect expect = !is_in_range(def.position) ? Expect::invalid
+                        : arrays_may_be_refused    ? Expect::anything
+                                                   : Expect::success;
   if (!call("create collider", expect, [&] { return loam_collider_create(world_, &def, &id); })) return;
   Collider collider = {};
   collider.id = id;
@@ -120,7 +127,8 @@ void Session::pose_collider(Random &random) {
     if (!turn) std::copy(collider.rotation, collider.rotation + 4, rotation);
   }
   const auto pose = teleport ? loam_collider_place : loam_collider_move;
-  if (!call(teleport ? "place collider" : "move collider", Expect::success,
+  const Expect expect = is_in_range(position) ? Expect::success : Expect::invalid;
+  if (!call(teleport ? "place collider" : "move collider", expect,
             [&] { return pose(world_, collider.id, position, rotation); }))
     return;
   std::copy(position, position + 3, collider.target_position);

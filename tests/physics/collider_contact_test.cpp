@@ -79,6 +79,14 @@ TEST(ColliderContact, RestitutionIsThatOfThePair) {
   EXPECT_LT(std::abs(pair.now().velocities[4]), 1e-3);
 }
 
+/* A particle goes no farther than r in a substep, whatever speed it was given: it does not bounce off what only that speed would reach. */
+TEST(ColliderContact, NothingBouncesOffWhatIsOutOfReach) {
+  Pair pair(1, 0, -1e4f, contact(0, 0.5f, 0), contact(0, 0, 0)); // 100 spacings over it
+  pair.run(1.0f / 120);
+  EXPECT_LT(pair.now().positions[1], 1);
+  EXPECT_EQ(pair.now().positions[1], pair.now().positions[4]); // the other, which never bounces
+}
+
 /* Under a ceiling a cube of r hangs by a stress of density g r: 5 % more holds it, 5 % less does not. */
 TEST(ColliderContact, StickIsThatOfThePair) {
   const float weight = scenes::rubber().density * gravity * spacing;

@@ -146,7 +146,8 @@ private:
     const Row &row = velocities[local.particle];
     const ContactParticle matter = {xyz(row), row.w, positions[local.particle].w, substep, rest_speed};
     plane.friction = law.friction;
-    plane.gap = gap_with_bounce(law, matter, plane.normal, plane.gap, plane.surface_velocity);
+    // A particle that is faster than it may go does not hit what is out of its reach.
+    if (plane.gap < reach) plane.gap = gap_with_bounce(law, matter, plane.normal, plane.gap, plane.surface_velocity);
     plane.hold = greatest_hold(law, matter, distance, stand_off);
     return plane;
   }
