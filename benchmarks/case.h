@@ -63,7 +63,7 @@ void run_library(benchmark::State &state, const Case &measured);
 void run_reference(benchmark::State &state, const Case &measured);
 void run_snapshot(benchmark::State &state, const Case &measured, std::uint32_t multiplier, bool restoring);
 
-void run_cloth(benchmark::State &state, std::uint32_t vertices_a_side, std::uint32_t threads, std::uint32_t instruction_set);
+void run_cloth(benchmark::State &state, std::uint32_t vertices_a_side, std::uint32_t threads);
 
 /* Whether the library has this backend and instruction set here. */
 bool is_available(const Case &measured);

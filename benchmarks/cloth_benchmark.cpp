@@ -14,8 +14,7 @@ constexpr std::uint32_t cloth_iterations = 10;
 
 } // namespace
 
-void run_cloth(benchmark::State &state, std::uint32_t vertices_a_side, std::uint32_t threads,
-               std::uint32_t instruction_set) {
+void run_cloth(benchmark::State &state, std::uint32_t vertices_a_side, std::uint32_t threads) {
   try {
     const std::uint32_t n = vertices_a_side - 1;
     const cloths::Grid grid(n, n, 0.005f);
@@ -23,7 +22,6 @@ void run_cloth(benchmark::State &state, std::uint32_t vertices_a_side, std::uint
     const double constraints = grid_edges + diagonals + bent;
     loam_world_def def = cloths::world_def(cloth_iterations, 1);
     def.thread_count = threads;
-    def.instruction_set = instruction_set;
     scenes::World world(def);
     const cloths::Cloth cloth(world.get(), cloths::definition(grid));
     cloth.attach({grid.at(0, 0), grid.at(n, 0)});

@@ -45,9 +45,8 @@ void add_snapshots(const std::string &name, const loam_material_def &material) {
 
 void add_cloth(std::uint32_t vertices_a_side, std::uint32_t threads) {
   const std::string size = std::to_string(vertices_a_side) + "x" + std::to_string(vertices_a_side);
-  benchmark::RegisterBenchmark(
-      ("cloth/" + size + "/threads:" + std::to_string(threads)).c_str(),
-      [=](benchmark::State &state) { run_cloth(state, vertices_a_side, threads, LOAM_INSTRUCTION_SET_AUTO); })
+  benchmark::RegisterBenchmark(("cloth/" + size + "/threads:" + std::to_string(threads)).c_str(),
+                               [=](benchmark::State &state) { run_cloth(state, vertices_a_side, threads); })
       ->UseManualTime()
       ->Unit(benchmark::kMillisecond)
       ->Iterations(60);

@@ -36,7 +36,7 @@ void RatioTable::ReportRuns(const std::vector<Run> &runs) {
   ConsoleReporter::ReportRuns(runs);
   for (const Run &run : runs) {
     if (run.error_occurred || run.run_type != Run::RT_Iteration) continue;
-    if (counter(run.counters, step_rate_counter) == 0) continue; // a snapshot, not a step
+    if (counter(run.counters, step_rate_counter) == 0) continue; // a snapshot or a cloth: no pairs
     // configuration/particles
     const std::string &name = run.run_name.function_name;
     const std::size_t slash = name.rfind('/');

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Measures what each effect costs in a scene, and writes the tables of docs/effects.md and its plot.
 
     effects.py [--build DIR] [--json FILE] [--keep FILE]
@@ -12,7 +12,10 @@ import pathlib
 import subprocess
 import sys
 
-import matplotlib
+try:
+    import matplotlib
+except ImportError:
+    sys.exit("error: matplotlib is missing: scripts/install_dependencies.sh docs")
 
 matplotlib.use("svg")
 from matplotlib import pyplot  # noqa: E402  (the backend is chosen before)
@@ -20,8 +23,8 @@ from matplotlib import pyplot  # noqa: E402  (the backend is chosen before)
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 DOCUMENT = ROOT / "docs" / "effects.md"
 PLOT = ROOT / "docs" / "images" / "effects.svg"
-COLOURS = {"solver": "#4c72b0", "materials": "#dd8452", "colliders": "#55a868", "cloth": "#8172b3", "fluid": "#64b5cd",
-           "scene": "#c44e52", "host": "#937860"}
+COLOURS = {"solver": "#4c72b0", "materials": "#dd8452", "colliders": "#55a868", "cloth": "#8172b3",
+           "host": "#937860"}
 
 
 def processor():
@@ -82,7 +85,7 @@ def sleep_text(results):
     hit = next(step for step in sleep["hit"] if step["awake"] > 1)
     return (f"A pile of {sleep['particles']} grains falls asleep {sleep['seconds_until_asleep']:.1f} s after it was put down. A step then takes "
             f"{1e3 * asleep:.3f} ms; awake it takes {1e3 * awake:.1f} ms: {100 * asleep / awake:.2f} %. In the step in which a grain at 5 m/s "
-            f"hits it, {hit['awake']} grains wake, and the step takes {1e3 * hit['seconds']:.1f} ms; "
+            f"hits it, {hit['awake'] - 1} others wake, and the step takes {1e3 * hit['seconds']:.1f} ms; "
             f"{len(sleep['hit'])} steps later {sleep['hit'][-1]['awake']} are awake.")
 
 
@@ -113,7 +116,7 @@ def main():
         arguments.keep.write_text(json.dumps(results, indent=1))
     options = results["options"]
     parts = {
-        "machine": f"{processor()}, {options['threads']} thread; {options['particles']} particles, {options['substeps']} substeps of 0.5 ms a step, "
+        "machine": f"{processor()}, {options['threads']} thread; {options['particles']} particles, {options['substeps']} substeps of {1e3 * options['substep_seconds']:g} ms a step, "
                    f"{options['iterations']} iterations; the fastest of the steps.",
         "sand": sand_table(results),
         "effects": effects_table(results),

@@ -80,15 +80,15 @@ void two_sands_in_contact(Setup &setup) {
 
 /* --------------------------------------------------------------------------------------------- the colliders --- */
 
-/* In the middle of the sand's surface, half of it inside. */
-void add_collider(Setup &setup, const std::function<void(loam_collider_def &)> &define, bool moving) {
+/* In the middle of the sand's surface, which a ball of 8 spacings touches. */
+template <class Define> void add_collider(Setup &setup, Define define) {
   const Box box = bounds(setup.scene);
   const float x = 0.5f * (box.lower[0] + box.upper[0]), z = 0.5f * (box.lower[2] + box.upper[2]), y = box.upper[1];
   setup.additions.push_back([=](loam_world *world, loam_material_id) {
     loam_collider_def def;
     require(loam_collider_def_default(&def, sizeof def), "loam_collider_def_default");
     def.position[0] = x;
-    def.position[1] = y + (moving ? 6 : 9) * spacing;
+    def.position[1] = y + 8.2f * spacing;
     def.position[2] = z;
     define(def);
     loam_collider_id collider;
@@ -96,25 +96,20 @@ void add_collider(Setup &setup, const std::function<void(loam_collider_def &)> &
   });
 }
 
-void sphere(Setup &setup) {
-  add_collider(
-      setup,
-      [](loam_collider_def &def) {
-        def.kind = LOAM_COLLIDER_SPHERE;
-        def.radius = 8 * spacing;
-      },
-      false);
+template <bool AsksReaction> void sphere(Setup &setup) {
+  add_collider(setup, [](loam_collider_def &def) {
+    def.kind = LOAM_COLLIDER_SPHERE;
+    def.radius = 8 * spacing;
+    def.reaction = AsksReaction ? 1 : 0;
+  });
 }
 
 template <int Subdivisions> void ball_of_triangles(Setup &setup) {
-  add_collider(
-      setup,
-      [](loam_collider_def &def) {
-        static const meshes::Mesh ball = meshes::icosphere(8 * spacing, Subdivisions);
-        def.kind = LOAM_COLLIDER_MESH;
-        def.mesh = ball.view();
-      },
-      false);
+  add_collider(setup, [](loam_collider_def &def) {
+    static const meshes::Mesh ball = meshes::icosphere(8 * spacing, Subdivisions);
+    def.kind = LOAM_COLLIDER_MESH;
+    def.mesh = ball.view();
+  });
 }
 
 /* ------------------------------------------------------------------------------------------------- the cloth --- */
@@ -191,7 +186,8 @@ std::vector<Effect> all() {
       {"materials", "Herschel-Bulkley", "half the sand is shaving foam", two_sands,
        upper_half_of<LOAM_LAW_HERSCHEL_BULKLEY>},
       {"materials", "Stomakhin's snow", "half the sand is snow", two_sands, upper_half_of<LOAM_LAW_STOMAKHIN_SNOW>},
-      {"colliders", "a sphere", "dips into the sand", nullptr, sphere},
+      {"colliders", "a sphere", "touches the sand", nullptr, sphere<false>},
+      {"colliders", "its reaction", "the sphere asks for it", sphere<false>, sphere<true>},
       {"colliders", "a mesh of 1 280 triangles", "the same sphere", nullptr, ball_of_triangles<3>},
       {"colliders", "a mesh of 20 480 triangles", "the same sphere", nullptr, ball_of_triangles<5>},
       {"cloth", "cloth, touching nothing", "2 401 vertices, held at its corners", nullptr, cloth_far_away},

@@ -179,6 +179,7 @@ int main(int argument_count, char **arguments) {
     json["options"] = {{"particles", options.particles},
                        {"threads", options.threads},
                        {"substeps", substeps},
+                       {"substep_seconds", substep_seconds},
                        {"iterations", sand_in_a_box(8, 1).def.iterations}};
     const auto sand = run(options, nullptr);
     for (int step = 0; step < warm_up_steps + options.steps; ++step) sand->step(step >= warm_up_steps);

@@ -75,9 +75,8 @@ typedef struct loam_allocator {
  *
  * `enqueue` schedules `task(argument)` once, on any thread, at any later time, and returns a token for `finish`; it may also
  * run the task at once. `finish` returns when that task has returned (running it there and then is fine). During a step the
- * library enqueues at most thread_count - 1 tasks, works itself on the calling thread (that of the asynchronous step, if it is one), and finishes them before it
- * returns. The
- * step also completes when no task is ever started before `finish`: late or missing help costs time, never correctness, and
+ * library enqueues at most thread_count - 1 tasks, works itself on the calling thread (that of the asynchronous step, if it is one), and finishes them before
+ * it returns. The step also completes when no task is ever started before `finish`: late or missing help costs time, never correctness, and
  * never changes a result. */
 typedef struct loam_job_system {
   void *user;

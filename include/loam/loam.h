@@ -6,7 +6,7 @@
  *   world.h      create a world, step it, ask what it cost
  *   material.h   what matter is made of
  *   material_design.h   materials by name, and by what can be seen of them
- *   collider.h   planes and triangle meshes that matter runs into
+ *   collider.h   what matter runs into: planes, simple solids, distance grids, triangle meshes
  *   cloth.h      sheets that hang, drape and blow in the wind
  *   particles.h  fill volumes with particles, read the particles back
  *   snapshot.h   save the state of a world, and go back to it

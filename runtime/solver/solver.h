@@ -110,6 +110,7 @@ private:
   void correct_positions();
   void measure(const Vec3<float> &gravity);
   void finish_statistics(const StepInput &input);
+  float greatest_mass();
   template <class F> void with_law(int material, F &&f) {
     std::visit([&](const auto &law) { f(law, limit_of(law)); }, materials_[static_cast<std::size_t>(material)].law);
   }
@@ -178,7 +179,6 @@ private:
   ColliderShapes<Executor> shapes_{executor_};
   ContactLaws<Executor> contact_laws_{executor_};
   ColliderReactions<Executor> reactions_{executor_};
-  float greatest_mass();
   std::vector<ColliderView> views_, views_before_; // of this substep and the one before
   ColliderMotion collider_motion_;
   bool free_distances_hold_ = false; // what they say was true at the end of views_before_

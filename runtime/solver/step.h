@@ -6,7 +6,6 @@ namespace loam {
 template <class Executor> void Solver<Executor>::step(const StepInput &input) {
   compile_schedule(!input.colliders.empty());
   schedule_.begin_step();
-  contact_laws_.prepare(input.colliders, materials_.size());
 
   const float g = length(input.gravity);
   up_ = g > 0.0f ? (-1.0f / g) * input.gravity : Vec3<float>{0, 1, 0};
@@ -18,6 +17,7 @@ template <class Executor> void Solver<Executor>::step(const StepInput &input) {
   contact_count_ = 0;
   pairs_ = 0;
   executor_.set(counters_.data(), 4, 0);
+  contact_laws_.prepare(input.colliders, materials_.size()); // memory may be refused from here on: no substep was done
   const auto begin = std::chrono::steady_clock::now();
   executor_.lap();
   executor_.session([&] {

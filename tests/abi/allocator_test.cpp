@@ -55,6 +55,14 @@ public:
     loam_cloth_id cloth = 0;
     attempt("cloth", [&] { return loam_cloth_create(world_, &sheet, &cloth); });
     for (int k = 0; k < 3; ++k) attempt("step", [&] { return loam_world_step(world_, 1e-3f); });
+    // A wall that moves into the matter, and memory for a contact of its own in the same step; of one substep, for a step that is repeated after
+    // some of its substeps goes farther.
+    attempt("accuracy", [&] { return loam_world_set_accuracy(world_, 1, 2); });
+    loam_collider_contact contact = {sizeof contact, 0.1f, 0, 0};
+    attempt("contact", [&] { return loam_collider_set_contact(world_, collider_id, soft, &contact); });
+    const float position[3] = {0.04f, 0, 0}, rotation[4] = {0, 0, 0, 1};
+    attempt("move", [&] { return loam_collider_move(world_, collider_id, position, rotation); });
+    attempt("step", [&] { return loam_world_step(world_, 1e-3f); });
     loam_particle_view view = {};
     view.struct_size = sizeof view;
     attempt("map", [&] { return loam_particles_map(world_, &view); });

@@ -17,30 +17,19 @@ namespace {
 
 using test::SmallWorld;
 
-std::uint64_t hash_after(std::uint32_t threads, const loam_job_system &jobs, bool asynchronous) {
-  const scenes::Scene scene = scenes::jittered_block(scenes::sand(), 1500);
-  loam_world_def def = scenes::world_def(scene);
-  def.thread_count = threads;
-  def.job_system = jobs;
-  def.substeps = 4;
-  scenes::World world(def, scene);
-  for (int k = 0; k < 3; ++k) {
-    if (asynchronous) {
-      EXPECT_EQ(loam_world_step_async(world.get(), 0.004f), LOAM_OK);
-      EXPECT_EQ(loam_world_wait(world.get()), LOAM_OK);
-    } else {
-      world.step(0.004f);
-    }
-  }
-  return world.state_hash();
+std::uint64_t hash_in_the_background(std::uint32_t threads, const loam_job_system &jobs) {
+  return test::hash_after_steps(jobs, threads, [](scenes::World &world, float seconds) {
+    EXPECT_EQ(loam_world_step_async(world.get(), seconds), LOAM_OK);
+    EXPECT_EQ(loam_world_wait(world.get()), LOAM_OK);
+  });
 }
 
 TEST(AsynchronousStep, HasTheResultOfAStep) {
-  const std::uint64_t expected = hash_after(1, {}, false);
-  EXPECT_EQ(hash_after(1, {}, true), expected);
-  EXPECT_EQ(hash_after(3, {}, true), expected);
+  const std::uint64_t expected = test::hash_after_steps({}, 1);
+  EXPECT_EQ(hash_in_the_background(1, {}), expected);
+  EXPECT_EQ(hash_in_the_background(3, {}), expected);
   hooks::ThreadJobs threads;
-  EXPECT_EQ(hash_after(3, threads.hooks(), true), expected);
+  EXPECT_EQ(hash_in_the_background(3, threads.hooks()), expected);
   EXPECT_GT(threads.enqueued, 0u);
   EXPECT_EQ(threads.enqueued, threads.finished);
 }

@@ -7,16 +7,7 @@
 namespace loam {
 namespace {
 
-std::uint64_t hash_after_steps(const loam_job_system &jobs, std::uint32_t threads) {
-  const scenes::Scene scene = scenes::jittered_block(scenes::sand(), 1500);
-  loam_world_def def = scenes::world_def(scene);
-  def.thread_count = threads;
-  def.job_system = jobs;
-  def.substeps = 4;
-  scenes::World world(def, scene);
-  for (int k = 0; k < 3; ++k) world.step(0.004f);
-  return world.state_hash();
-}
+using test::hash_after_steps;
 
 TEST(JobSystem, AnyKindGivesTheSameResult) {
   const std::uint64_t expected = hash_after_steps({}, 1);

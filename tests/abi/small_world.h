@@ -23,6 +23,21 @@ inline void expect_error_names(const std::vector<std::string> &parts) {
         << "\"" << loam_last_error() << "\" names no " << part;
 }
 
+/* The hash of a block that collapses, after three steps that `step` makes. */
+template <class Step> std::uint64_t hash_after_steps(const loam_job_system &jobs, std::uint32_t threads, Step &&step) {
+  const scenes::Scene scene = scenes::jittered_block(scenes::sand(), 1500);
+  loam_world_def def = scenes::world_def(scene);
+  def.thread_count = threads;
+  def.job_system = jobs;
+  def.substeps = 4;
+  scenes::World world(def, scene);
+  for (int k = 0; k < 3; ++k) step(world, 0.004f);
+  return world.state_hash();
+}
+inline std::uint64_t hash_after_steps(const loam_job_system &jobs, std::uint32_t threads) {
+  return hash_after_steps(jobs, threads, [](scenes::World &world, float seconds) { world.step(seconds); });
+}
+
 class SmallWorld : public testing::Test {
 protected:
   SmallWorld() : scene_(scenes::jittered_block(scenes::sand(), 64)), world_(definition(scene_), scene_) {

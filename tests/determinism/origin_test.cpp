@@ -29,14 +29,8 @@ public:
     loam_cloth_def cloth_def = cloths::definition(grid);
     std::copy(at, at + 3, cloth_def.position);
     cloth_def.position[1] += 0.25f;
-    loam_cloth_id cloth = 0;
-    scenes::require(loam_cloth_create(world_.get(), &cloth_def, &cloth), "cloth");
-    loam_cloth_attachment_def attachment;
-    scenes::require(loam_cloth_attachment_def_default(&attachment, sizeof attachment), "default");
-    const std::uint32_t corner = 0;
-    attachment.count = 1;
-    attachment.vertices = &corner;
-    scenes::require(loam_cloth_attach(world_.get(), cloth, &attachment), "attach");
+    const cloths::Cloth cloth(world_.get(), cloth_def);
+    cloth.attach({0});
   }
   static loam_world_def definition() {
     loam_world_def def = scenes::world_def(scenes::jittered_block(scenes::sand(), 300));

@@ -176,21 +176,11 @@ TEST(SnapshotOfCloth, GoesOnWithTheSameBits) {
   const cloths::Grid grid(17, 13, 0.01f);
   loam_cloth_def cloth_def = cloths::definition(grid);
   cloth_def.position[1] = 0.03f;
-  loam_cloth_id cloth = 0;
-  scenes::require(loam_cloth_create(world.get(), &cloth_def, &cloth), "cloth");
+  const cloths::Cloth cloth(world.get(), cloth_def);
   const std::uint32_t corner = grid.at(0, 0), end = grid.at(16, 0);
-  loam_cloth_attachment_def attachment;
-  scenes::require(loam_cloth_attachment_def_default(&attachment, sizeof attachment), "default");
-  attachment.count = 1;
-  attachment.vertices = &corner;
-  attachment.collider = handle;
-  scenes::require(loam_cloth_attach(world.get(), cloth, &attachment), "attach");
-  attachment.vertices = &end;
-  attachment.collider = 0;
-  attachment.compliance = 0.01f;
-  scenes::require(loam_cloth_attach(world.get(), cloth, &attachment), "attach");
-  const float wind[3] = {3, 0, 1}, calm[3] = {0, 0, 0};
-  scenes::require(loam_cloth_set_wind(world.get(), cloth, wind, 1, 0.5f), "wind");
+  cloth.attach({corner}, {}, 0, handle);
+  cloth.attach({end}, {}, 0.01f);
+  cloth.set_wind(3, 0, 1, 1, 0.5f);
   const auto step = [&](int frame) {
     const float at[3] = {0.001f * float(frame), 0, 0}, turn[4] = {0, 0, 0, 1};
     scenes::require(loam_collider_move(world.get(), handle, at, turn), "move");
@@ -202,8 +192,8 @@ TEST(SnapshotOfCloth, GoesOnWithTheSameBits) {
   for (int frame = 5; frame < 10; ++frame) step(frame);
   const std::uint64_t expected = world.state_hash();
 
-  scenes::require(loam_cloth_release(world.get(), cloth, &corner, 1), "release");
-  scenes::require(loam_cloth_set_wind(world.get(), cloth, calm, 0, 0), "wind");
+  scenes::require(loam_cloth_release(world.get(), cloth.id, &corner, 1), "release");
+  cloth.set_wind(0, 0, 0, 0, 0);
   step(3);
   snapshots::restore(world.get(), saved);
   EXPECT_EQ(world.state_hash(), then);

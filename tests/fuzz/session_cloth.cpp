@@ -32,7 +32,7 @@ void Session::create_cloth(Random &random) {
   cloths::Grid grid(1, 1, 1);
   const loam_cloth_def def = random_cloth(random, def_.kernel_radius, grid);
   const bool usual = def_.kernel_radius >= 1e-3f && def_.kernel_radius <= 1; // others may leave what a cloth allows
-  const Expect expect = usual && !mapped_ ? Expect::success : Expect::anything;
+  const Expect expect = usual ? Expect::success : Expect::anything;
   loam_cloth_id id = 0;
   if (!call("create cloth", expect, [&] { return loam_cloth_create(world_, &def, &id); })) return;
   now_.cloths.push_back({id, std::vector<loam_collider_id>(grid.positions.size() / 3, 0)});
@@ -44,8 +44,7 @@ void Session::destroy_cloth(Random &random) {
   if (now_.cloths.empty()) return;
   const std::size_t which = random.below(now_.cloths.size());
   const loam_cloth_id id = now_.cloths[which].id;
-  if (!call("destroy cloth", mapped_ ? Expect::anything : Expect::success, [&] { return loam_cloth_destroy(world_, id); }))
-    return;
+  if (!call("destroy cloth", Expect::success, [&] { return loam_cloth_destroy(world_, id); })) return;
   stale_.push_back(id);
   now_.cloths.erase(now_.cloths.begin() + std::ptrdiff_t(which));
   ++description_;
@@ -72,7 +71,7 @@ void Session::attach(Random &random) {
   if (random.chance(0.3)) def.points = points.data();
   if (random.chance(0.3)) def.compliance = random.log_between(1e-9, 1e3);
   if (!now_.colliders.empty() && random.chance(0.5)) def.collider = any(now_.colliders, random).id;
-  const Expect expect = mapped_ ? Expect::anything : held ? Expect::in_use : Expect::success;
+  const Expect expect = held ? Expect::in_use : Expect::success;
   if (!call("attach", expect, [&] { return loam_cloth_attach(world_, cloth.id, &def); })) return;
   for (const std::uint32_t v : vertices) cloth.held[v] = def.collider != 0 ? def.collider : Cloth::by_space;
 }
@@ -89,7 +88,7 @@ void Session::release(Random &random) {
       vertices.push_back(std::uint32_t(v));
     }
   if (vertices.empty()) return;
-  const Expect expect = mapped_ ? Expect::anything : free ? Expect::invalid : Expect::success;
+  const Expect expect = free ? Expect::invalid : Expect::success;
   if (!call("release", expect,
             [&] { return loam_cloth_release(world_, cloth.id, vertices.data(), std::uint32_t(vertices.size())); }))
     return;
@@ -103,8 +102,7 @@ void Session::blow(Random &random) {
   for (float &w : wind) w = random.between(-1, 1) * random.log_between(0.1, 100);
   const float drag = random.chance(0.2) ? 0 : random.log_between(0.01, 100),
               lift = random.chance(0.5) ? 0 : random.log_between(0.01, 100);
-  call("blow", mapped_ ? Expect::anything : Expect::success,
-       [&] { return loam_cloth_set_wind(world_, cloth, wind, drag, lift); });
+  call("blow", Expect::success, [&] { return loam_cloth_set_wind(world_, cloth, wind, drag, lift); });
 }
 
 double Session::look_at_cloth(const Cloth &cloth) {

@@ -3,6 +3,15 @@
 
 namespace loam::fuzz {
 
+namespace {
+
+/* A kernel radius of kilometres puts some places farther out than a collider may be. */
+bool is_in_range(const float position[3]) {
+  return std::all_of(position, position + 3, [](float x) { return std::fabs(x) <= 1e9f; });
+}
+
+} // namespace
+
 // ------------------------------------------------------------------------------------------ materials and colliders ---
 
 void Session::create_material(Random &random) {
@@ -72,11 +81,6 @@ void Session::destroy_material(Random &random) {
   ++description_;
   stale_.push_back(material.id);
   now_.materials.erase(now_.materials.begin() + std::ptrdiff_t(which));
-}
-
-/* A kernel radius of kilometres puts some places farther out than a collider may be. */
-static bool is_in_range(const float position[3]) {
-  return std::all_of(position, position + 3, [](float x) { return std::fabs(x) <= 1e9f; });
 }
 
 void Session::create_collider(Random &random) {

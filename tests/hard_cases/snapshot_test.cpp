@@ -20,15 +20,8 @@ protected:
     other.planes.clear();
     world_.add(other);
     const cloths::Grid grid(3, 3, 0.02f);
-    const loam_cloth_def cloth_def = cloths::definition(grid);
-    loam_cloth_id cloth = 0;
-    scenes::require(loam_cloth_create(world_.get(), &cloth_def, &cloth), "cloth");
-    loam_cloth_attachment_def attachment;
-    scenes::require(loam_cloth_attachment_def_default(&attachment, sizeof attachment), "default");
-    const std::uint32_t corner = 0;
-    attachment.count = 1;
-    attachment.vertices = &corner;
-    scenes::require(loam_cloth_attach(world_.get(), cloth, &attachment), "attach");
+    const cloths::Cloth cloth(world_.get(), cloths::definition(grid));
+    cloth.attach({0});
     world_.step(1e-3f);
     saved_ = snapshots::save(world_.get());
     hash_ = world_.state_hash();
