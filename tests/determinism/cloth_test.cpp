@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "support/cloths.h"
+#include "support/hooks.h"
 
 namespace loam {
 namespace {
@@ -34,6 +35,10 @@ std::uint64_t hash_of(std::uint32_t threads, std::uint32_t instruction_set) {
 
 TEST(SameBitsOfCloth, ForAnyNumberOfThreadsAndInstructionSet) {
   const std::uint64_t expected = hash_of(1, LOAM_INSTRUCTION_SET_AUTO);
+  if (hooks::short_run()) {
+    EXPECT_EQ(hash_of(3, LOAM_INSTRUCTION_SET_AUTO), expected);
+    return;
+  }
   EXPECT_EQ(hash_of(2, LOAM_INSTRUCTION_SET_AUTO), expected);
   EXPECT_EQ(hash_of(5, LOAM_INSTRUCTION_SET_AUTO), expected);
   for (std::uint32_t set = LOAM_INSTRUCTION_SET_PORTABLE; set <= LOAM_INSTRUCTION_SET_AVX512; ++set)

@@ -93,13 +93,14 @@ TEST(SameBitsOfEveryLaw, ForAnyNumberOfThreadsAndInstructionSet) {
       if (m > 0) share.planes.clear();
       world.add(share);
     }
-    for (int frame = 0; frame < 10; ++frame) world.step(2e-3f);
+    for (int frame = 0; frame < (hooks::short_run() ? 3 : 10); ++frame) world.step(2e-3f);
     EXPECT_EQ(world.statistics().non_finite, 0u);
     return world.state_hash();
   };
   for (const std::uint32_t solver : {LOAM_SOLVER_GAUSS_SEIDEL, LOAM_SOLVER_JACOBI}) {
     const std::uint64_t expected = hash(solver, 1, LOAM_INSTRUCTION_SET_AUTO);
     EXPECT_EQ(hash(solver, 3, LOAM_INSTRUCTION_SET_AUTO), expected);
+    if (hooks::short_run()) continue; // with a sanitizer: other instruction sets do the same with threads
     for (std::uint32_t set = LOAM_INSTRUCTION_SET_PORTABLE; set <= LOAM_INSTRUCTION_SET_AVX512; ++set)
       if (has(set)) {
         EXPECT_EQ(hash(solver, 1, set), expected) << set;
@@ -139,6 +140,7 @@ TEST(SameBitsOfSleep, ForAnyNumberOfThreadsAndInstructionSet) {
     };
     const std::uint64_t expected = hash(1, LOAM_INSTRUCTION_SET_AUTO);
     EXPECT_EQ(hash(3, LOAM_INSTRUCTION_SET_AUTO), expected);
+    if (hooks::short_run()) continue;
     for (std::uint32_t set = LOAM_INSTRUCTION_SET_PORTABLE; set <= LOAM_INSTRUCTION_SET_AVX512; ++set)
       if (has(set)) {
         EXPECT_EQ(hash(2, set), expected) << set;
