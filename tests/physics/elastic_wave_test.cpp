@@ -62,9 +62,10 @@ struct Bar {
 
 TEST(ElasticWave, BetweenHeldSidesItIsThePressureWaves) {
   Bar bar;
+  bar.width = 6; // walls hold the centres of the outermost layers: 3.1 % slow over 4 spacings, 2.3 % over 6, 2.0 % over 8
   const double ratio = bar.wave_speed() / bar.confined();
   RecordProperty("ratio", std::to_string(ratio));
-  EXPECT_NEAR(ratio, 1, 0.04);                 // 3 % on a lattice in order
+  EXPECT_NEAR(ratio, 1, 0.03);
   EXPECT_GT(bar.confined() / bar.thin(), 1.1); // the control: the other closed form is far off
   bar.jitter = 0.02f;
   const double ordered = bar.wave_speed() / bar.confined();
