@@ -133,9 +133,4 @@ private:
   std::vector<Stored> shapes_;
 };
 
-// Shapes whose distance takes long enough that it pays to remember it: see kernels/contact/free_distance.h.
-inline bool is_costly(const Shape &shape) {
-  return shape.kind == LOAM_COLLIDER_MESH || shape.kind == LOAM_COLLIDER_GRID || shape.kind == LOAM_COLLIDER_HULL;
-}
-
 } // namespace loam

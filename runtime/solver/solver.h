@@ -61,7 +61,7 @@ private:
     Array<Row> positions, velocities;
     Array<float> strains, histories, drifts, log_volumes, rest_volumes;
     Array<std::uint32_t> ids, materials;
-    Array<float> free_distances; // while there are costly shapes
+    Array<float> free_distances; // while there are colliders
     Array<float> rests;          // where something may sleep
     ParticleArrays arrays() {
       return {positions.data(), velocities.data(),     strains.data(),      histories.data(),

@@ -215,11 +215,9 @@ template <class Executor> void Solver<Executor>::prepare_contacts(const StepInpu
   lap(schedule_.find_contacts, particles());
 }
 
-// Free distances are held while there are shapes that they pay for, and forgotten where a collider came, went or was placed.
+// Free distances are held while there are colliders (one plane is enough for them to pay), and forgotten where a collider came, went or was placed.
 template <class Executor> void Solver<Executor>::prepare_free_distances() {
-  const bool costly =
-      std::any_of(views_.begin(), views_.end(), [](const ColliderView &view) { return is_costly(view.shape); });
-  if (!costly || !settings_.keep_free_distances) {
+  if (views_.empty() || !settings_.keep_free_distances) {
     now_.free_distances.free();
     other_.free_distances.free();
   } else {
