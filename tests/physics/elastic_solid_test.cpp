@@ -69,7 +69,7 @@ TEST(Cantilever, ItFollowsTheElasticaOfItsEffectiveLength) {
   }
 }
 
-/* Sampling is no property of matter. A slender beam, of 48 x 6 x 6, differs more: by 11 % over these lattices, for disorder lowers Young's modulus
+/* Sampling is no property of matter. This one varies by 3.4 %; a slender one, of 48 x 6 x 6, by 11 %, for disorder lowers Young's modulus
  * (see the elastic waves). Without control of the zero-energy modes the beam tears off its clamp. */
 TEST(Cantilever, ItsDropHardlyDependsOnTheLattice) {
   Cantilever beam;
@@ -84,7 +84,7 @@ TEST(Cantilever, ItsDropHardlyDependsOnTheLattice) {
     least = std::min(least, drop);
     most = std::max(most, drop);
   }
-  EXPECT_LT(most / least, 1.06);
+  EXPECT_LT(most / least, 1.05);
   beam.jitter = 0.12f;
   beam.zero_energy_stiffness = 0;
   const double uncontrolled = beam.run().drop;
