@@ -8,6 +8,7 @@
  *   material_design.h   materials by name, and by what can be seen of them
  *   collider.h   what matter runs into: planes, simple solids, distance grids, triangle meshes
  *   cloth.h      sheets that hang, drape and blow in the wind
+ *   emitter.h    matter that streams in
  *   particles.h  fill volumes with particles, read the particles back
  *   snapshot.h   save the state of a world, and go back to it
  *
@@ -20,6 +21,7 @@
 #include <loam/base.h>
 #include <loam/cloth.h>
 #include <loam/collider.h>
+#include <loam/emitter.h>
 #include <loam/material.h>
 #include <loam/material_design.h>
 #include <loam/particles.h>

@@ -135,7 +135,8 @@ LOAM_API loam_status loam_world_destroy(loam_world *world);
 
 /* Advances the world by `seconds` (over 0, at most 1), in the definition's number of substeps.
  * Errors: INVALID_ARGUMENT; IN_USE while particle buffers are mapped; CAPACITY or OUT_OF_MEMORY if the neighbour pairs need more
- * room. On CAPACITY or OUT_OF_MEMORY the world stands at the end of the last whole substep (*statistics.substeps_done of them). */
+ * room; CAPACITY if a stream found no room (see loam_emitter_def.when_full). On CAPACITY or OUT_OF_MEMORY the world stands at the end of the last whole
+ * substep (*statistics.substeps_done of them): for a stream's sake that is the end of the step. */
 LOAM_API loam_status loam_world_step(loam_world *world, float seconds);
 
 /* Begins a step like loam_world_step and returns at once; the step runs on a thread that the world starts with its first asynchronous step and keeps until it
@@ -176,9 +177,9 @@ LOAM_API loam_status loam_world_wake(loam_world *world);
 LOAM_API loam_status loam_world_get_backend(const loam_world *world, uint32_t *backend, uint32_t *instruction_set);
 
 /* A 64-bit hash of the state of all matter: of each particle its place in the solver's order, position, velocity, strain, volumes, mass, what its law
- * remembers, id and material; of each vertex of cloth its position, velocity and mass. It does not cover what the host says: definitions, gravity,
- * poses of colliders, wind, attachments. Same build, backend and inputs: same hash, for any number of threads and any instruction set; and two
- * worlds that were told the same and have equal hashes step alike. */
+ * remembers, id and material; of each vertex of cloth its position, velocity and mass; of each emitter how far its stream is. It does not cover what the
+ * host says: definitions, gravity, poses of colliders, wind, attachments. Same build, backend and inputs: same hash, for any number of threads and any
+ * instruction set; and two worlds that were told the same and have equal hashes step alike. */
 LOAM_API loam_status loam_world_state_hash(const loam_world *world, uint64_t *hash);
 
 /* ------------------------------------------------------------------------------------------------ statistics --- */
@@ -225,6 +226,12 @@ typedef struct loam_statistics {
   uint64_t strain_decomposed;
 
   uint64_t sleeping; /* particles that sleep now, see loam_world_def.sleep_speed */
+
+  /* Of the emitters, in the step: particles that came in, and particles that found no room. With a particle_capacity of capacity_needed none would have
+   * been dropped since the world was made; 0 where none was. */
+  uint64_t particles_entered;
+  uint64_t particles_dropped;
+  uint64_t capacity_needed;
 } loam_statistics;
 
 /* Errors: INVALID_ARGUMENT for null or an unknown struct_size. */

@@ -101,7 +101,7 @@ loam_status loam_world_state_hash(const loam_world *world, uint64_t *hash) {
     check_pointer(world, "world");
     check_pointer(hash, "hash");
     // Hashing runs kernels, but changes nothing that can be seen.
-    *hash = const_cast<loam_world *>(world)->backend().state_hash();
+    *hash = const_cast<loam_world *>(world)->state_hash();
   });
 }
 
@@ -111,6 +111,7 @@ loam_status loam_world_get_statistics(const loam_world *world, loam_statistics *
     check_pointer(statistics, "statistics");
     loam_statistics values = world->backend().statistics();
     values.particles = world->backend().particle_count();
+    values.capacity_needed = world->capacity_needed();
     write_definition(statistics, "statistics", statistics->struct_size, values);
   });
 }

@@ -15,7 +15,8 @@ namespace loam {
 enum class IdKind : std::uint8_t {
   material = 1,
   collider = 2,
-  cloth = 3
+  cloth = 3,
+  emitter = 4
 }; // at most 7: an id of one kind is never good for another
 
 template <class T> class SlotTable {

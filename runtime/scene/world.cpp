@@ -86,7 +86,8 @@ using namespace loam;
 
 loam_world::loam_world(const loam_world_def &def)
     : def_(def), tag_(next_tag()), materials_(IdKind::material, "material", tag_, 4096),
-      colliders_(IdKind::collider, "collider", tag_, 4096), cloths_(tag_, 0.5f * def.kernel_radius) {
+      colliders_(IdKind::collider, "collider", tag_, 4096), cloths_(tag_, 0.5f * def.kernel_radius),
+      emitters_(tag_, next_id_) {
   execution_ = {def.allocator, def.job_system, def.thread_count, def.instruction_set};
   if (execution_.instruction_set == LOAM_INSTRUCTION_SET_AUTO) execution_.instruction_set = best_instruction_set();
   if (kernel_table(execution_.instruction_set) == nullptr)
@@ -167,7 +168,7 @@ void loam_world::check_not_stepping() const {
   if (busy_) throw Error(LOAM_ERROR_BUSY, "an asynchronous step was begun; call loam_world_wait first");
 }
 
-const loam::Schedule &loam_world::schedule() const { return backend_->schedule(!colliders_.empty()); }
+const loam::Schedule &loam_world::schedule() const { return backend_->schedule({!colliders_.empty(), emitters_.any()}); }
 
 void loam_world::run_step(float seconds) {
   input_.seconds = seconds;
@@ -181,10 +182,12 @@ void loam_world::run_step(float seconds) {
           {c->shape, c->law, c->pose, c->target, c->pairs, c->asks_reaction ? &c->reaction : nullptr});
     }
   cloths_.use_colliders(backend_->cloth(), index_of_slot_);
+  input_.source = emitters_.any() ? &emitters_ : nullptr;
   try {
     backend_->step(input_);
     input_.wake = false;
   } catch (const Error &) {
+    (void)count_streams();
     // Colliders stop with the particles, at the end of the last whole substep.
     const double share = static_cast<double>(backend_->statistics().substeps_done) / input_.substeps;
     for (std::size_t i = 0; i < colliders_.size(); ++i)
@@ -193,7 +196,30 @@ void loam_world::run_step(float seconds) {
   }
   for (std::size_t i = 0; i < colliders_.size(); ++i)
     if (Collider *c = colliders_.at_index(i); c != nullptr) c->pose = c->target;
+  if (const std::uint64_t untold = count_streams(); untold > 0)
+    throw Error(LOAM_ERROR_CAPACITY,
+                format("%llu particles of streams found no room and were dropped; the step was done. particle_capacity is "
+                       "%llu and would have to be %llu so far",
+                       static_cast<unsigned long long>(untold), static_cast<unsigned long long>(def_.particle_capacity),
+                       static_cast<unsigned long long>(capacity_needed())));
 }
+
+// What streamed in, into the books. Answers how many were dropped that the host wants to be told of.
+std::uint64_t loam_world::count_streams() {
+  std::uint64_t untold = 0;
+  emitters_.for_each([&](Emitter &emitter) {
+    const EmitterState &state = emitter.state();
+    materials_.at(emitter.material(), "material").particles += state.entered - emitter.counted;
+    emitter.counted = state.entered;
+    const std::uint64_t dropped = state.dropped - emitter.told;
+    emitter.told = state.dropped;
+    dropped_ += dropped;
+    if (emitter.def().when_full == LOAM_FULL_TELL) untold += dropped;
+  });
+  return untold;
+}
+
+std::uint64_t loam_world::capacity_needed() const { return dropped_ > 0 ? def_.particle_capacity + dropped_ : 0; }
 
 void loam_world::limit_stiffness() {
   input_.stiffness_share = 1;
@@ -207,7 +233,7 @@ void loam_world::limit_stiffness() {
         static_cast<float>(stiffness_share(m->def, static_cast<double>(def_.kernel_radius), substep, input_.iterations));
     changed = changed || share != m->stiffness_share;
     m->stiffness_share = share;
-    if (m->particles > 0) input_.stiffness_share = std::min(input_.stiffness_share, share);
+    if (m->particles > 0 || m->emitters > 0) input_.stiffness_share = std::min(input_.stiffness_share, share);
   }
   if (changed) send_materials();
 }
@@ -224,6 +250,7 @@ void loam_world::shift_origin(const float offset[3]) {
       c->pose.position = c->pose.position - by;
       c->target.position = c->target.position - by;
     }
+  emitters_.for_each([&](Emitter &emitter) { emitter.shift_origin(by); });
 }
 
 void loam_world::set_gravity(const float gravity[3]) {
@@ -249,7 +276,8 @@ void loam_world::send_materials() {
     if (m == nullptr) {
       list.push_back({Elastic{}, "", false});
     } else {
-      list.push_back({make_law(m->def, static_cast<double>(m->stiffness_share)), m->def.name, m->particles > 0});
+      list.push_back(
+          {make_law(m->def, static_cast<double>(m->stiffness_share)), m->def.name, m->particles > 0 || m->emitters > 0});
       needed = list.size();
     }
   }
@@ -299,6 +327,11 @@ void loam_world::set_material(loam_material_id id, const loam_material_def &def)
   Material &m = materials_.at(id, "material");
   check_material(def);
   check_unmapped();
+  if (m.emitters > 0 && (def.law != m.def.law || def.density != m.def.density))
+    throw Error(LOAM_ERROR_IN_USE,
+                format("law is %u and density is %g; material \"%s\" has %d emitters, so they must stay %u and %g", def.law,
+                       static_cast<double>(def.density), m.def.name, m.emitters, m.def.law,
+                       static_cast<double>(m.def.density)));
   const auto particles = static_cast<unsigned long long>(m.particles);
   if (particles > 0 && def.law != m.def.law)
     throw Error(LOAM_ERROR_IN_USE, format("law is %u; material \"%s\" has %llu particles of law %u, which must stay",
@@ -320,6 +353,7 @@ void loam_world::set_material(loam_material_id id, const loam_material_def &def)
 
 void loam_world::destroy_material(loam_material_id id) {
   const Material &m = materials_.at(id, "material");
+  if (m.emitters > 0) throw Error(LOAM_ERROR_IN_USE, format("material \"%s\" has %d emitters", m.def.name, m.emitters));
   if (m.particles > 0)
     throw Error(LOAM_ERROR_IN_USE,
                 format("material \"%s\" has %llu particles", m.def.name, static_cast<unsigned long long>(m.particles)));
@@ -429,6 +463,40 @@ void loam_world::attach_cloth(loam_cloth_id id, const loam_cloth_attachment_def 
     pose = colliders_.at(def.collider, "collider").pose;
   }
   cloths_.attach(backend_->cloth(), id, def, slot, pose);
+}
+
+// ------------------------------------------------------------------------------------------------------ emitters ---
+
+loam_emitter_id loam_world::create_emitter(const loam_emitter_def &def) {
+  check_unmapped();
+  Material &m = materials_.at(def.material, "material");
+  const loam_emitter_id id = emitters_.add(Emitter(def, def_.kernel_radius, m.def.density, def_.particle_capacity));
+  ++m.emitters;
+  try {
+    send_materials();
+  } catch (...) {
+    --m.emitters;
+    emitters_.remove(id);
+    throw;
+  }
+  return id;
+}
+
+void loam_world::destroy_emitter(loam_emitter_id id) {
+  check_unmapped();
+  struct Hand final : ParticleSink {
+    explicit Hand(Backend &of) : backend(of) {}
+    std::uint64_t room() const override { return 0; }
+    void enter(const Layer &) override {}
+    void release(const Release &release) override { backend.release_particles(release); }
+    void drop(std::uint64_t) override {}
+    Backend &backend;
+  } hand(*backend_);
+  Emitter &emitter = emitters_.at(id);
+  emitter.let_go(hand);
+  --materials_.at(emitter.material(), "material").emitters;
+  emitters_.remove(id);
+  send_materials();
 }
 
 // ----------------------------------------------------------------------------------------------------- particles ---

@@ -6,6 +6,7 @@
 #include <loam/loam.h>
 
 #include "scene/cloth.h"
+#include "scene/emitter.h"
 #include "scene/slot_table.h"
 #include "scene/step_thread.h"
 #include "solver/backend.h"
@@ -61,6 +62,12 @@ public:
   loam::ClothScene &cloths() { return cloths_; }
   void attach_cloth(loam_cloth_id id, const loam_cloth_attachment_def &def);
 
+  loam_emitter_id create_emitter(const loam_emitter_def &def);
+  void destroy_emitter(loam_emitter_id id);
+  loam_emitter_report emitter_report(loam_emitter_id id) const { return emitters_.at(id).report(); }
+  std::uint64_t capacity_needed() const; // that would have left no particle of a stream without room; 0: there was room
+  std::uint64_t state_hash() { return emitters_.hash(backend_->state_hash()); }
+
   std::uint64_t fill(const loam_fill_def &def);
   std::uint32_t add(const loam_particles_def &def);
   void remove_particles(const std::uint32_t *ids, std::uint64_t count);
@@ -77,6 +84,7 @@ private:
   struct Material {
     loam_material_def def;
     std::uint64_t particles = 0;
+    int emitters = 0;
     float stiffness_share = 1; // that the present substep can carry
   };
   struct Contact { // between two materials, by their slots, the lower first
@@ -101,6 +109,7 @@ private:
   void check(const Moving &moving) const;
   void check_state(const loam::SnapshotReader &snapshot, const std::vector<loam::StateSection> &state,
                    std::uint64_t next_id) const;
+  std::uint64_t count_streams();
   void check_unmapped() const;
   void check_step(float seconds) const;
   void run_step(float seconds);
@@ -120,9 +129,11 @@ private:
   loam::SlotTable<Collider> colliders_;
   loam::ClothScene cloths_;
   std::vector<int> index_of_slot_; // while there is cloth: where each of colliders_ is among those of the step
+  std::uint64_t next_id_ = 0;      // of particles; those of removed ones do not come back
+  loam::EmitterScene emitters_;
   std::unique_ptr<loam::Backend> backend_;
   loam::StepInput input_{};
-  std::uint64_t next_id_ = 0; // of particles; those of removed ones do not come back
+  std::uint64_t dropped_ = 0; // of all streams so far
   bool mapped_ = false;
   bool busy_ = false; // a step was begun and not waited for
   std::unique_ptr<loam::StepThread>

@@ -23,6 +23,8 @@ struct loam_world::Moving {
   };
   std::vector<Poses> colliders; // by slot
   std::vector<ClothScene::Changes> cloths;
+  std::uint64_t dropped; // of all streams so far
+  std::vector<EmitterState> emitters;
 };
 
 namespace {
@@ -137,13 +139,16 @@ float float_of(std::uint32_t word) {
 } // namespace
 
 loam_world::Moving loam_world::moving() const {
-  Moving moving = {input_.substeps, input_.iterations, input_.gravity, next_id_, input_.wake ? 1u : 0u, {}, {}};
+  Moving moving = {
+      input_.substeps, input_.iterations, input_.gravity, next_id_, input_.wake ? 1u : 0u, {}, {}, dropped_, {}};
   for (std::size_t i = 0; i < colliders_.size(); ++i) {
     const Collider *c = colliders_.at_index(i);
     moving.colliders.push_back(c != nullptr ? Moving::Poses{c->pose, c->target} : Moving::Poses{});
   }
   for (std::size_t i = 0; i < cloths_.slot_count(); ++i)
     moving.cloths.push_back(cloths_.description(i) != nullptr ? cloths_.changes(i) : ClothScene::Changes());
+  for (std::size_t i = 0; i < emitters_.slot_count(); ++i)
+    moving.emitters.push_back(emitters_.at_slot(i) != nullptr ? emitters_.at_slot(i)->state() : EmitterState());
   return moving;
 }
 
@@ -240,6 +245,35 @@ template <class Fields> void loam_world::exchange(Fields &fields, Moving &moving
     fields.value(moving.cloths[i].wind);
   }
 
+  const auto emitter_at = [&](std::size_t i) { return emitters_.at_slot(i); };
+  const std::uint32_t emitters = used_slots(emitters_.slot_count(), emitter_at);
+  fields.at("emitters", 0);
+  fields.same("number of emitters", emitters);
+  for (std::size_t i = 0; i < emitters; ++i) {
+    fields.at("emitter", i);
+    const Emitter *e = emitter_at(i);
+    fields.same("presence", static_cast<std::uint32_t>(e != nullptr));
+    if (e == nullptr) continue;
+    const loam_emitter_def &def = e->def();
+    fields.same("nozzle", def.nozzle);
+    fields.same("material", static_cast<std::uint32_t>(materials_.index_of(def.material, "material")));
+    for (const float component : def.rotation) fields.same("rotation", component);
+    for (const float component : def.direction) fields.same("direction", component);
+    fields.same("radius", def.radius);
+    fields.same("speed", def.speed);
+    fields.same("fingerprint of the mesh", e->mesh());
+    fields.same("flow", def.flow);
+    fields.same("mass_flow", def.mass_flow);
+    fields.same("spacing", def.spacing);
+    fields.same("jitter", def.jitter);
+    fields.same("velocity_jitter", def.velocity_jitter);
+    fields.same("start", def.start);
+    fields.same("stop", def.stop);
+    fields.same("seed", def.seed);
+    fields.value(moving.emitters[i]);
+  }
+  fields.value(moving.dropped);
+
   fields.value(moving.substeps);
   fields.value(moving.iterations);
   fields.value(moving.gravity);
@@ -268,6 +302,8 @@ void loam_world::check(const Moving &moving) const {
                                  colliders_.at_index(static_cast<std::size_t>(a.collider)) == nullptr))
           invalid("attaches a vertex to a collider that is not there");
     }
+  for (std::size_t i = 0; i < emitters_.slot_count(); ++i)
+    if (const Emitter *e = emitters_.at_slot(i); e != nullptr) e->check_state(moving.emitters[i], moving.next_id);
 }
 
 // ------------------------------------------------------------------------------------------------------- saving ---
@@ -399,6 +435,9 @@ void loam_world::restore(const std::byte *memory, std::uint64_t bytes) {
   input_.gravity = moving.gravity;
   next_id_ = moving.next_id;
   input_.wake = moving.wake != 0;
+  dropped_ = moving.dropped;
+  for (std::size_t i = 0; i < emitters_.slot_count(); ++i)
+    if (Emitter *e = emitters_.at_slot(i); e != nullptr) e->set_state(moving.emitters[i]);
   for (std::size_t i = 0; i < colliders_.size(); ++i)
     if (Collider *c = colliders_.at_index(i); c != nullptr) {
       c->pose = moving.colliders[i].pose;

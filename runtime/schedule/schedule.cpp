@@ -17,24 +17,26 @@ void Schedule::compile(const SceneContents &contents) {
   order = add("visit order");
   gradients = add("gradients");
   forces = add("forces");
-  if (contents.colliders) find_contacts = add("find contacts");
-  if (contents.cloth && (contents.colliders || contents.particles)) find_cloth_contacts = add("find cloth contacts");
+  if (contents.surroundings.colliders) find_contacts = add("find contacts");
+  if (contents.cloth && (contents.surroundings.colliders || contents.particles))
+    find_cloth_contacts = add("find cloth contacts");
   if (contents.cloth) prepare_cloth = add("prepare cloth");
   for (const SceneContents::Material &material : contents.materials)
     solve.push_back(material.in_use ? add("solve " + material.name) : -1);
   if (contents.position_correction) position_correction = add("position correction");
   if (contents.cloth) solve_cloth = add("solve cloth");
   if (contents.cloth && contents.particles) cloth_particles = add("cloth and particles");
-  if (contents.colliders) contacts = add("contacts");
-  if (contents.cloth && contents.colliders) cloth_contacts = add("cloth contacts");
+  if (contents.surroundings.colliders) contacts = add("contacts");
+  if (contents.cloth && contents.surroundings.colliders) cloth_contacts = add("cloth contacts");
   if (contents.velocity_smoothing) velocity_smoothing = add("velocity smoothing");
   speed_limit = add("speed limit");
-  if (contents.colliders) final_contacts = add("final contacts");
+  if (contents.surroundings.colliders) final_contacts = add("final contacts");
   for (const SceneContents::Material &material : contents.materials)
     strain.push_back(material.in_use ? add("strain " + material.name) : -1);
   advance = add("advance");
   if (contents.cloth) finish_cloth = add("finish cloth");
   if (contents.sleep) sleep = add("sleep");
+  if (contents.surroundings.emitters) emitters = add("emitters");
   statistics = add("statistics");
 }
 

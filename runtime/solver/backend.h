@@ -17,6 +17,7 @@
 #include "solver/cloth_backend.h"
 #include "solver/collider_shape.h"
 #include "solver/execution_settings.h"
+#include "solver/particle_source.h"
 #include "solver/state_section.h"
 
 namespace loam {
@@ -77,8 +78,11 @@ struct StepInput {
   std::uint32_t substeps, iterations;
   Vec3<float> gravity;
   std::vector<ColliderState> colliders;
-  bool wake = false;         // all that sleeps
-  float stiffness_share = 1; // the least of the materials; for the statistics
+  bool wake = false;                // all that sleeps
+  float stiffness_share = 1;        // the least of the materials; for the statistics
+  ParticleSource *source = nullptr; // where there are emitters
+
+  Surroundings surroundings() const { return {!colliders.empty(), source != nullptr}; }
 };
 
 struct NewParticles {
@@ -107,6 +111,7 @@ public:
   virtual void add_particles(const NewParticles &particles) = 0;
   // Both throw Error and change nothing for an id that no particle has, or that is named twice. Answers how many of each material went.
   virtual std::vector<std::uint64_t> remove_particles(const std::uint32_t *ids, std::uint64_t count) = 0;
+  virtual void release_particles(const Release &release) = 0;
   virtual void set_motion(const ParticleMotion &motion) = 0;
   virtual std::uint64_t particle_count() const = 0;
   // Throws Error; then the particles stand at the end of the last whole substep, and `statistics.substeps_done` says of which.
@@ -128,7 +133,7 @@ public:
   virtual void adopt_state(std::uint64_t particles) = 0;
   virtual const loam_statistics &statistics() const = 0;
   // Of what the world contains now.
-  virtual const Schedule &schedule(bool colliders) = 0;
+  virtual const Schedule &schedule(const Surroundings &surroundings) = 0;
   virtual std::vector<MemoryUse> memory() const = 0;
   virtual ClothBackend &cloth() = 0;
 };

@@ -11,6 +11,7 @@
 #include "kernels/integration/edit_particles.h"
 #include "kernels/integration/integrate.h"
 #include "kernels/integration/measures.h"
+#include "kernels/integration/release_particles.h"
 #include "kernels/neighbours/sort_stages.h"
 #include "scene/error.h"
 #include "scene/pose.h"
@@ -24,7 +25,7 @@
 
 namespace loam {
 
-template <class Executor> class Solver final : public Backend {
+template <class Executor> class Solver final : public Backend, private ParticleSink {
 public:
   Solver(const SolverSettings &settings, const ExecutionSettings &execution);
 
@@ -33,6 +34,9 @@ public:
   void remove_shape(int shape) override;
   void add_particles(const NewParticles &particles) override;
   std::vector<std::uint64_t> remove_particles(const std::uint32_t *ids, std::uint64_t count) override;
+  void release_particles(const Release &release) override {
+    executor_.session([&] { this->release(release); });
+  }
   void set_motion(const ParticleMotion &motion) override;
   std::uint64_t particle_count() const override { return static_cast<std::uint64_t>(count_); }
   void step(const StepInput &input) override;
@@ -46,8 +50,8 @@ public:
   void write_state(const StateSection &section, std::uint64_t first, std::size_t count, const std::uint32_t *words) override;
   void adopt_state(std::uint64_t particles) override;
   const loam_statistics &statistics() const override { return statistics_; }
-  const Schedule &schedule(bool colliders) override {
-    compile_schedule(colliders);
+  const Schedule &schedule(const Surroundings &surroundings) override {
+    compile_schedule(surroundings);
     return schedule_;
   }
   std::vector<MemoryUse> memory() const override;
@@ -89,12 +93,20 @@ private:
     executor_.upload(array.data(), values.data(), values.size());
   }
 
+  // What streams in, in streams.h.
+  void let_in(ParticleSource &source, double seconds);
+  std::uint64_t room() const override;
+  void enter(const Layer &layer) override;
+  void release(const Release &release) override;
+  void drop(std::uint64_t count) override;
+  void set_unstrained(std::size_t at, int count, std::uint32_t material, float volume);
+
   std::vector<std::uint32_t> places_of(const std::uint32_t *ids, std::size_t count);
 
   // The parts of a substep, in substep.h.
   void substep(const StepInput &input, std::uint32_t index);
   void search_neighbours();
-  void compile_schedule(bool colliders);
+  void compile_schedule(const Surroundings &surroundings);
   void make_grid();
   void wake_all();
   bool all_asleep(const StepInput &input, std::uint32_t index);
@@ -143,7 +155,8 @@ private:
   SmoothingKernel kernel_;
   Schedule schedule_;
   ClothSolver<Executor> cloth_{executor_};
-  bool schedule_is_current_ = false, schedule_has_colliders_ = false, schedule_has_cloth_ = false;
+  bool schedule_is_current_ = false, schedule_has_cloth_ = false;
+  Surroundings scheduled_; // what the schedule was made for
   std::vector<SolverMaterial> materials_;
   int material_capacity_ = 0;
   int count_ = 0;
@@ -344,18 +357,7 @@ template <class Executor> void Solver<Executor>::add_particles(const NewParticle
   executor_.upload(now_.positions.data() + at, positions.data(), n);
   executor_.upload(now_.velocities.data() + at, velocities.data(), n);
   executor_.upload(now_.ids.data() + at, ids.data(), n);
-  executor_.set(now_.materials.data() + at, count, particles.material);
-  executor_.set(now_.rest_volumes.data() + at, count, particles.volume);
-  executor_.set(now_.log_volumes.data() + at, count, 0.0f);
-  executor_.set(now_.strains.data() + 6 * at, 6 * count, 0.0f);
-  if (histories_in_use_) {
-    const float history =
-        std::visit([](const auto &law) { return law.initial_history(); }, materials_[particles.material].law);
-    executor_.set(now_.histories.data() + at, count, history);
-  }
-  if (drifts_in_use_) executor_.set(now_.drifts.data() + 3 * at, 3 * count, 0.0f);
-  if (now_.free_distances.capacity() > 0) executor_.set(now_.free_distances.data() + at, count, 0.0f);
-  if (now_.rests.capacity() > 0) executor_.set(now_.rests.data() + at, count, 0.0f);
+  set_unstrained(at, count, particles.material, particles.volume);
   awake_ = 1;
   count_ += count;
 }
@@ -448,6 +450,7 @@ template <class Executor> std::vector<MemoryUse> Solver<Executor>::memory() cons
 #include "solver/edit.h"
 #include "solver/state.h"
 #include "solver/step.h"
+#include "solver/streams.h"
 #include "solver/substep.h"
 
 #include "solver/sleeping.h"

@@ -4,13 +4,14 @@
 namespace loam {
 
 template <class Executor> void Solver<Executor>::step(const StepInput &input) {
-  compile_schedule(!input.colliders.empty());
+  compile_schedule(input.surroundings());
   schedule_.begin_step();
 
   const float g = length(input.gravity);
   up_ = g > 0.0f ? (-1.0f / g) * input.gravity : Vec3<float>{0, 1, 0};
   statistics_.substeps_done = 0;
   statistics_.pair_visits = 0;
+  statistics_.particles_entered = statistics_.particles_dropped = 0;
   statistics_.step_seconds = 0;
   residual_ = 0;
   virial_moment_ = 0;
@@ -25,10 +26,11 @@ template <class Executor> void Solver<Executor>::step(const StepInput &input) {
                        static_cast<double>(input.seconds) / input.substeps, [this] { return greatest_mass(); });
     // Cloth cannot tell whom it touches, so nothing sleeps beside it.
     if ((input.wake || !cloth_.empty()) && schedule_.sleep >= 0) wake_all();
-    if (count_ > 0 || !cloth_.empty())
+    if (count_ > 0 || !cloth_.empty() || input.source != nullptr)
       for (std::uint32_t i = 0; i < input.substeps; ++i) {
         const bool idle = schedule_.sleep >= 0 && count_ > 0 && all_asleep(input, i) && cloth_.empty();
         if (!idle) substep(input, i);
+        if (input.source != nullptr) let_in(*input.source, static_cast<double>(input.seconds) / input.substeps);
         ++statistics_.substeps_done;
         statistics_.pairs = pairs_;
         statistics_.pair_visits += pairs_ * input.iterations;
@@ -47,21 +49,21 @@ template <class Executor> float Solver<Executor>::greatest_mass() {
   return least < LeastInverseMass::identity() ? 1.0f / least : 1000.0f * r * r * r;
 }
 
-template <class Executor> void Solver<Executor>::compile_schedule(bool colliders) {
+template <class Executor> void Solver<Executor>::compile_schedule(const Surroundings &surroundings) {
   const bool cloth = !cloth_.empty();
-  if (schedule_is_current_ && colliders == schedule_has_colliders_ && cloth == schedule_has_cloth_) return;
+  if (schedule_is_current_ && surroundings == scheduled_ && cloth == schedule_has_cloth_) return;
   SceneContents contents;
+  contents.surroundings = surroundings;
   for (const SolverMaterial &material : materials_) contents.materials.push_back({material.name, material.in_use});
   contents.position_correction = settings_.minimum_distance > 0.0f || contact_between_materials_;
   contents.velocity_smoothing = settings_.velocity_smoothing > 0.0f;
-  contents.colliders = colliders;
   contents.cloth = cloth;
   contents.sleep = settings_.sleep_speed > 0.0f;
   contents.particles =
       std::any_of(materials_.begin(), materials_.end(), [](const SolverMaterial &material) { return material.in_use; });
   schedule_.compile(contents);
   schedule_is_current_ = true;
-  schedule_has_colliders_ = colliders;
+  scheduled_ = surroundings;
   schedule_has_cloth_ = cloth;
 }
 

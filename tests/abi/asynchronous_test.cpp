@@ -196,6 +196,10 @@ TEST_F(SmallWorld, EveryFunctionSaysWhetherItMayBeCalledDuringAStep) {
   ASSERT_EQ(loam_collider_def_default(&collider, sizeof collider), LOAM_OK);
   ASSERT_EQ(loam_cloth_def_default(&cloth, sizeof cloth), LOAM_OK);
   ASSERT_EQ(loam_cloth_attachment_def_default(&attachment, sizeof attachment), LOAM_OK);
+  loam_emitter_def emitter;
+  ASSERT_EQ(loam_emitter_def_default(&emitter, sizeof emitter), LOAM_OK);
+  loam_emitter_report emitter_report = {};
+  emitter_report.struct_size = sizeof emitter_report;
   loam_material_def material = scene_.material;
   std::uint64_t id = 0;
   const std::map<std::string, std::function<loam_status()>> calls = {
@@ -228,6 +232,9 @@ TEST_F(SmallWorld, EveryFunctionSaysWhetherItMayBeCalledDuringAStep) {
       {"loam_cloth_set_wind", [&] { return loam_cloth_set_wind(w, 1, vector, 0, 0); }},
       {"loam_cloth_map", [&] { return loam_cloth_map(w, 1, &cloth_view); }},
       {"loam_cloth_unmap", [&] { return loam_cloth_unmap(w, 1); }},
+      {"loam_emitter_create", [&] { return loam_emitter_create(w, &emitter, &id); }},
+      {"loam_emitter_destroy", [&] { return loam_emitter_destroy(w, 1); }},
+      {"loam_emitter_get_report", [&] { return loam_emitter_get_report(w, 1, &emitter_report); }},
       {"loam_particles_fill", [&] { return loam_particles_fill(w, &fill, nullptr); }},
       {"loam_particles_add", [&] { return loam_particles_add(w, &add, nullptr); }},
       {"loam_particles_remove", [&] { return loam_particles_remove(w, &count, 1); }},

@@ -54,4 +54,8 @@ struct ParticleArrays {
 loam_particles_def random_particles(Random &random, float r, ParticleArrays &arrays);
 void spoil(loam_particles_def &def, Random &random, ParticleArrays &arrays);
 
+/* Without the material. A layer may have more particles than the world has room for. */
+loam_emitter_def random_emitter(Random &random, float r, meshes::Mesh &mesh);
+void spoil(loam_emitter_def &def, Random &random);
+
 } // namespace loam::fuzz

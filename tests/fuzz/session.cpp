@@ -14,7 +14,9 @@ void Session::find(const char *text, ...) {
   va_end(arguments);
   report_.findings.push_back("call " + std::to_string(report_.refused.size()) + ": " + line);
 }
+
 void Session::judge(const char *name, Expect expect, loam_status status) {
+  status_ = status;
   const std::string text = loam_last_error();
   const char *shown = loam_status_name(status);
   if (std::strcmp(shown, "LOAM_ERROR_UNKNOWN") == 0) find("%s returned the unknown status %d", name, status);
@@ -69,6 +71,7 @@ void Session::destroy_world() {
   for (const Material &material : now_.materials) stale_.push_back(material.id);
   for (const Collider &collider : now_.colliders) stale_.push_back(collider.id);
   for (const Cloth &cloth : now_.cloths) stale_.push_back(cloth.id);
+  for (const Emitter &emitter : now_.emitters) stale_.push_back(emitter.id);
   now_ = {};
   ++description_;
   kept_ = nullptr;
@@ -100,7 +103,8 @@ void Session::step(Random &random) {
 
 void Session::step_for(float seconds, bool in_the_background) {
   const double speed = greatest_collider_speed(seconds);
-  const Expect expect = mapped_ ? Expect::in_use : def_.pair_capacity != 0 ? Expect::room_or_none : Expect::success;
+  const bool may_lack_room = def_.pair_capacity != 0 || a_stream_tells();
+  const Expect expect = mapped_ ? Expect::in_use : may_lack_room ? Expect::room_or_none : Expect::success;
   const auto step = [&] {
     if (!in_the_background) return loam_world_step(world_, seconds);
     const loam_status begun = loam_world_step_async(world_, seconds);
@@ -113,7 +117,16 @@ void Session::step_for(float seconds, bool in_the_background) {
     if (running > 1) find("is stepping: %u", running);
     return loam_world_wait(world_);
   };
-  if (call("step", expect, step)) {
+  bool done = call("step", expect, step);
+  if (!mapped_ && !leaves_out()) {
+    const bool lacked_room = !done && status_ == LOAM_ERROR_CAPACITY;
+    count_effects();
+    loam_statistics now = {};
+    now.struct_size = sizeof now;
+    judge("statistics", Expect::success, loam_world_get_statistics(world_, &now));
+    done = done || (lacked_room && now.particles_dropped > 0 && now.substeps_done == now_.substeps); // a stream's room
+  }
+  if (done) {
     ++report_.steps;
     report_.particles += now_.count;
     for (Collider &collider : now_.colliders) {
@@ -171,7 +184,9 @@ void Session::check_after_step(float seconds, double collider_speed) {
     allocator_.refuse(0);
     for (const Cloth &cloth : now_.cloths) cloth_speed = std::max(cloth_speed, look_at_cloth(cloth));
   }
-  if (!(now.max_speed <= 2 * (limit * 1.001 + collider_speed + cloth_speed)))
+  double stream_speed = 0; // of what has just come out
+  for (const Emitter &emitter : now_.emitters) stream_speed = std::max(stream_speed, emitter.speed);
+  if (!(now.max_speed <= std::max(1.001 * stream_speed, 2 * (limit * 1.001 + collider_speed + cloth_speed))))
     find("a particle is at %g m/s; r / substep is %g m/s, colliders go at %g m/s, cloth at %g m/s", now.max_speed, limit,
          collider_speed, cloth_speed);
   const struct {
@@ -205,6 +220,7 @@ void Session::check_view(const loam_particle_view &view) {
     return;
   }
   std::vector<bool> seen(now_.particles.size(), false);
+  for (Material &material : now_.materials) material.particles = 0;
   for (std::size_t i = 0; i < view.count; ++i) {
     const std::uint32_t id = view.ids[i];
     if (id >= seen.size() || seen[id] || !now_.particles[id].here) {
@@ -219,8 +235,10 @@ void Session::check_view(const loam_particle_view &view) {
     if (!finite) find("a value of particle %u is not finite", id);
     if (!(x[3] > 0) || !(v[3] >= 0) || !(view.densities[i] >= 0))
       find("particle %u: volume %g, inverse mass %g, density %g", id, double(x[3]), double(v[3]), double(view.densities[i]));
+    for (Material &material : now_.materials) material.particles += std::uint32_t(material.id) == view.materials[i] ? 1 : 0;
     Particle &known = now_.particles[id];
-    if (known.inverse_mass < 0) {
+    const bool was_led = known.inverse_mass == 0 && known.streamed && known.material == view.materials[i];
+    if (known.inverse_mass < 0 || was_led) {
       known.inverse_mass = v[3];
       known.material = view.materials[i];
     } else if (known.inverse_mass != v[3] || known.material != view.materials[i]) {
@@ -278,6 +296,7 @@ void Session::act(Random &random) {
                                        {2, &Session::release},
                                        {2, &Session::blow},
                                        {2, &Session::bad_cloth},
+                                       {6, &Session::change_emitters},
                                        {12, &Session::bad_number_or_choice},
                                        {6, &Session::bad_handle},
                                        {3, &Session::bad_pointer}};

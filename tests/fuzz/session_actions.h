@@ -42,10 +42,17 @@ struct Cloth {
   static constexpr loam_collider_id by_space = ~loam_collider_id(0);
 };
 
+struct Emitter {
+  loam_emitter_id id;
+  std::uint64_t entered;
+  bool tells;
+  double speed; // at most, as it comes out
+};
+
 /* Of each particle that ever was, by id. */
 struct Particle {
-  bool here;
-  float inverse_mass; // negative: not seen yet
+  bool here, streamed; // the latter came from a nozzle, which leads it for a while
+  float inverse_mass;  // negative: not seen yet
   std::uint32_t material;
   float position[3]; // as last seen
 };
@@ -58,6 +65,7 @@ struct Known {
   std::vector<Material> materials;
   std::vector<Collider> colliders;
   std::vector<Cloth> cloths;
+  std::vector<Emitter> emitters;
 };
 
 /* A snapshot with what was known then. */
@@ -109,6 +117,7 @@ private:
   void release(Random &random);
   void blow(Random &random);
   void bad_cloth(Random &random);
+  void change_emitters(Random &random);
   void bad_number_or_choice(Random &random);
   void bad_handle(Random &random);
   void bad_pointer(Random &random);
@@ -124,7 +133,9 @@ private:
   void check_view(const loam_particle_view &view);
   bool save_to(std::vector<unsigned char> &bytes);
   std::vector<std::uint32_t> some_ids(Random &random) const;
-  void born(std::uint64_t count);
+  void born(std::uint64_t count, bool streamed);
+  bool a_stream_tells() const;
+  void count_effects();
   void check_memory(bool world_is_gone);
   double greatest_distance(const float from[3]) const;
   double greatest_collider_speed(float seconds) const;
@@ -148,6 +159,7 @@ private:
   hooks::Log log_;
   bool refuses_ = false, memory_refused_ = false;
   bool mapped_ = false;
+  loam_status status_ = LOAM_OK;  // of the last call that was judged
   std::uint64_t description_ = 0; // another number after each change of what a snapshot asks to be the same
   Known now_;
   Saved saved_;

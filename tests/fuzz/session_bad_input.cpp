@@ -98,7 +98,7 @@ void Session::bad_number_or_choice(Random &random) {
 }
 
 void Session::bad_handle(Random &random) {
-  const std::uint32_t which = random.below(7);
+  const std::uint32_t which = random.below(8);
   std::uint64_t id = 0;
   if (!stale_.empty() && random.chance(0.6))
     id = stale_[random.below(stale_.size())];
@@ -122,6 +122,9 @@ void Session::bad_handle(Random &random) {
     call("report no collider", Expect::stale, [&] { return loam_collider_get_report(world_, id, &report); });
     break;
   }
+  case 7:
+    call("destroy no emitter", mapped_ ? Expect::failure : Expect::stale, [&] { return loam_emitter_destroy(world_, id); });
+    break;
   case 3:
     call("destroy no material", Expect::stale, [&] { return loam_material_destroy(world_, id); });
     break;

@@ -75,7 +75,8 @@ void Session::destroy_material(Random &random) {
   if (now_.materials.empty()) return;
   const std::size_t which = random.below(now_.materials.size());
   const Material material = now_.materials[which];
-  const Expect expect = material.particles > 0 || mapped_ ? Expect::anything : Expect::success;
+  const bool may_be_in_use = material.particles > 0 || mapped_ || !now_.emitters.empty();
+  const Expect expect = may_be_in_use ? Expect::anything : Expect::success;
   if (!call("destroy material", expect, [&] { return loam_material_destroy(world_, material.id); })) return;
   if (material.particles > 0) find("a material that is in use was destroyed");
   ++description_;
@@ -155,7 +156,7 @@ void Session::fill(Random &random) {
     return;
   if (made == 0) find("a fill made no particles and said nothing");
   material.particles += made;
-  born(made);
+  born(made, false);
   look();
 }
 
@@ -170,14 +171,14 @@ void Session::add(Random &random) {
     return;
   if (first != now_.particles.size()) find("the first id is %u, not %zu", first, now_.particles.size());
   material.particles += def.count;
-  born(def.count);
+  born(def.count, false);
   if (now_.count > def_.particle_capacity) find("more particles than particle_capacity");
   look();
 }
 
-void Session::born(std::uint64_t count) {
+void Session::born(std::uint64_t count, bool streamed) {
   now_.count += count;
-  now_.particles.resize(now_.particles.size() + count, Particle{true, -1, 0, {0, 0, 0}});
+  now_.particles.resize(now_.particles.size() + count, Particle{true, streamed, -1, 0, {0, 0, 0}});
 }
 
 void Session::unmap() {

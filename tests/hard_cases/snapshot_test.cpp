@@ -11,17 +11,26 @@ namespace {
 
 using snapshots::Bytes;
 
-/* Sand and snow on a plane, and a sheet that hangs from it. */
+/* Sand and snow on a plane, a sheet that hangs from it, and a stream. */
 class DamagedSnapshot : public testing::Test {
 protected:
   DamagedSnapshot() : world_(definition()) {
-    world_.add(scenes::jittered_block(scenes::sand(), 8));
+    const loam_material_id material = world_.add(scenes::jittered_block(scenes::sand(), 8));
     scenes::Scene other = scenes::jittered_block(scenes::plasticine(), 8);
     other.planes.clear();
     world_.add(other);
     const cloths::Grid grid(3, 3, 0.02f);
     const cloths::Cloth cloth(world_.get(), cloths::definition(grid));
     cloth.attach({0});
+    loam_emitter_def emitter;
+    scenes::require(loam_emitter_def_default(&emitter, sizeof emitter), "default");
+    emitter.material = material;
+    emitter.position[1] = 0.2f;
+    emitter.radius = 0.008f;
+    emitter.speed = 20;
+    emitter.when_full = LOAM_FULL_DROP;
+    loam_emitter_id nozzle = 0;
+    scenes::require(loam_emitter_create(world_.get(), &emitter, &nozzle), "emitter");
     world_.step(1e-3f);
     saved_ = snapshots::save(world_.get());
     hash_ = world_.state_hash();

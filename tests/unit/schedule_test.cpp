@@ -28,7 +28,7 @@ TEST(Schedule, AnEmptySceneHasNoEffects) {
 }
 
 TEST(Schedule, EachEffectBringsItsStagesInTheOrderOfExecution) {
-  const std::vector<std::string> list = names({{{"sand", true}, {"clay", false}, {"rubber", true}}, true, true, true});
+  const std::vector<std::string> list = names({{{"sand", true}, {"clay", false}, {"rubber", true}}, true, true, {true}});
   const std::vector<std::string> expected = {"sort",
                                              "neighbour search",
                                              "visit order",
@@ -51,7 +51,7 @@ TEST(Schedule, EachEffectBringsItsStagesInTheOrderOfExecution) {
 
 TEST(Schedule, AMaterialWithoutParticlesHasNoStage) {
   Schedule schedule;
-  schedule.compile({{{"sand", true}, {"clay", false}}, false, false, false});
+  schedule.compile({{{"sand", true}, {"clay", false}}, false, false, {}});
   ASSERT_EQ(schedule.solve.size(), 2u);
   EXPECT_GE(schedule.solve[0], 0);
   EXPECT_EQ(schedule.solve[1], -1);
