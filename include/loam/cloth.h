@@ -8,7 +8,8 @@
  * vertices is not looked at: over a convex collider of radius R, edges of length L cut in by up to L^2 / (8 R), less the thickness.
  * Particles keep half a kernel radius from the triangles, and push and rub against them both ways (what a substep cannot resolve is taken from the particle
  * alone); edges should be no longer than half of one. Not all of a heap that hits a cloth hard is held: of balls of sand 16 cm wide that were dropped from up to
- * 30 cm into a hanging cloth of 0.2 kg/m^2, about 2 grains in 100 got through. Cloth does not collide with itself or with other cloth, and in a world with cloth nothing sleeps.
+ * 30 cm into a hanging cloth of 0.2 kg/m^2, about 2 grains in 100 got through. Cloth collides with itself and with other cloth where its definition says so
+ * (self_distance). In a world with cloth nothing sleeps.
  *
  * Thread contract: as for the world; during an asynchronous step every function here that takes a world answers LOAM_ERROR_BUSY.
  */
@@ -54,6 +55,13 @@ typedef struct loam_cloth_def {
   float
       thickness; /* the distance that vertices keep from colliders, metres, 1e-6 to 1e3; 0 (the default): half the kernel radius */
   float particle_friction; /* Coulomb coefficient against particles, 0 to 100; default 0.5 */
+
+  /* The distance that vertices keep from all others of this cloth, but for those that are nearer at rest, and (the mean of both) from those of other cloth that has one;
+   * metres, 1e-6 to 1e3. 0 (the default): the cloth passes through itself, and that costs nothing. It should be a little more than the spacing of the vertices, the shorter
+   * sides of the triangles: where it is less, sheets find their way between vertices; where it is much more, folds are round. What nears by more than twice the distance within a
+   * substep may pass. */
+  float self_distance;
+  float self_friction; /* Coulomb coefficient of cloth on cloth, 0 to 100; of two cloths the mean counts; default 0.3 */
 } loam_cloth_def;
 
 /* Errors: INVALID_ARGUMENT for null or an unknown size. */

@@ -23,6 +23,7 @@ loam_cloth_def default_cloth() {
   def.warp[0] = 1;
   def.particle_friction = 0.5f;
   def.greatest_stretch = 0.005f;
+  def.self_friction = 0.3f;
   return def;
 }
 
@@ -118,6 +119,8 @@ void check_definition(const loam_cloth_def &def) {
     throw Error(LOAM_ERROR_INVALID_ARGUMENT, "warp is (0, 0, 0); it must have a direction");
   check_range("particle_friction", double(def.particle_friction), 0, 100);
   check_range("greatest_stretch", double(def.greatest_stretch), 0, 10);
+  if (def.self_distance != 0.0f) check_range("self_distance", double(def.self_distance), double(1e-6f), 1e3);
+  check_range("self_friction", double(def.self_friction), 0, 100);
   if (def.thickness != 0.0f) check_range("thickness", double(def.thickness), double(1e-6f), 1e3);
 }
 
@@ -129,12 +132,13 @@ SolverCloth make_cloth(const loam_cloth_def &def, const ClothMesh &mesh, float t
   SolverCloth cloth;
   cloth.material = {def.stretch_stiffness, def.shear_stiffness, def.bending_stiffness,
                     def.damping,           def.areal_density,   def.thickness != 0.0f ? def.thickness : thickness,
-                    def.particle_friction};
+                    def.particle_friction, def.self_distance,   def.self_friction};
   std::vector<double> masses(mesh.vertices.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     masses[static_cast<std::size_t>(mesh.triangles[i])] += double(def.areal_density) * double(mesh.areas[i / 3]) / 3;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    const Vec3<float> x = to_world(pose, mesh.vertices[i]);
+    const Vec3<float> x = to_world(pose, mesh.vertices[i]), rest = mesh.vertices[i];
+    cloth.rest.push_back({rest.x, rest.y, rest.z, 0.0f});
     cloth.positions.push_back({x.x, x.y, x.z, 0.0f});
     cloth.velocities.push_back({def.velocity[0], def.velocity[1], def.velocity[2], static_cast<float>(1 / masses[i])});
   }

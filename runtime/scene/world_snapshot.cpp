@@ -241,6 +241,8 @@ template <class Fields> void loam_world::exchange(Fields &fields, Moving &moving
     fields.same("greatest_stretch", c->def.greatest_stretch);
     fields.same("thickness", c->def.thickness);
     fields.same("particle_friction", c->def.particle_friction);
+    fields.same("self_distance", c->def.self_distance);
+    fields.same("self_friction", c->def.self_friction);
     fields.list(moving.cloths[i].attachments, c->vertex_count);
     fields.value(moving.cloths[i].wind);
   }

@@ -18,13 +18,14 @@ void Schedule::compile(const SceneContents &contents) {
   gradients = add("gradients");
   forces = add("forces");
   if (contents.surroundings.colliders) find_contacts = add("find contacts");
-  if (contents.cloth && (contents.surroundings.colliders || contents.particles))
+  if (contents.cloth && (contents.surroundings.colliders || contents.particles || contents.cloth_self_contact))
     find_cloth_contacts = add("find cloth contacts");
   if (contents.cloth) prepare_cloth = add("prepare cloth");
   for (const SceneContents::Material &material : contents.materials)
     solve.push_back(material.in_use ? add("solve " + material.name) : -1);
   if (contents.position_correction) position_correction = add("position correction");
   if (contents.cloth) solve_cloth = add("solve cloth");
+  if (contents.cloth_self_contact) cloth_self_contact = add("cloth self contact");
   if (contents.cloth && contents.particles) cloth_particles = add("cloth and particles");
   if (contents.surroundings.colliders) contacts = add("contacts");
   if (contents.cloth && contents.surroundings.colliders) cloth_contacts = add("cloth contacts");

@@ -38,7 +38,7 @@ struct SceneContents {
   bool position_correction = false;
   bool velocity_smoothing = false;
   Surroundings surroundings;
-  bool cloth = false;
+  bool cloth = false, cloth_self_contact = false;
   bool sleep = false;
   bool particles = false;
 };
@@ -49,7 +49,7 @@ public:
   int sort = -1, search = -1, order = -1, gradients = -1, forces = -1, find_contacts = -1, position_correction = -1,
       contacts = -1, velocity_smoothing = -1, speed_limit = -1, final_contacts = -1, advance = -1, sleep = -1,
       statistics = -1, find_cloth_contacts = -1, prepare_cloth = -1, solve_cloth = -1, cloth_contacts = -1,
-      cloth_particles = -1, finish_cloth = -1, emitters = -1;
+      cloth_particles = -1, cloth_self_contact = -1, finish_cloth = -1, emitters = -1;
   std::vector<int> solve, strain;
 
   void compile(const SceneContents &contents);

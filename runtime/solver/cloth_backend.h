@@ -34,6 +34,8 @@ struct ClothMaterial {
   float areal_density;  // kg/m^2
   float thickness;      // m: the distance that is kept from colliders
   float friction;       // against particles
+  float self_distance;  // m: between its vertices and those of other cloth that has one; 0: none is kept
+  float self_friction;
 };
 
 struct ClothWind {
@@ -43,6 +45,7 @@ struct ClothWind {
 
 struct SolverCloth {
   std::vector<Row> positions, velocities; // as for particles; positions.w is 0
+  std::vector<Row> rest;                  // in the mesh's frame
   std::vector<int> triangles;             // three vertices each
   ClothConstraintList membrane, hinges;
   ClothThreadList threads;

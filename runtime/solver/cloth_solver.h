@@ -23,12 +23,15 @@
 #include "schedule/schedule.h"
 #include "solver/cloth_backend.h"
 #include "solver/cloth_particles.h"
+#include "solver/cloth_self_contact.h"
 
 namespace loam {
 
 template <class Executor> class ClothSolver final : public ClothBackend {
 public:
-  explicit ClothSolver(Executor &executor) : executor_(executor) {}
+  // The executor's sort has room for the particles.
+  ClothSolver(Executor &executor, std::size_t particle_capacity)
+      : executor_(executor), particle_capacity_(particle_capacity) {}
 
   int add(const SolverCloth &description) override;
   void remove(int cloth) override;
@@ -45,6 +48,8 @@ public:
   }
 
   bool empty() const { return in_use_ == 0; }
+  // Is there cloth that collides with itself?
+  bool any_self_contact() const { return self_contact_.any(); }
   std::uint64_t bytes() const;
   // `hash` with the cloths' state in it; as it is where there are none.
   std::uint64_t hash(std::uint64_t hash);
@@ -65,6 +70,7 @@ public:
   void solve(const Substep &substep);
   void solve_contacts(const Substep &substep);
   void solve_particle_contacts(const Substep &substep);
+  void solve_self_contacts(const Substep &substep) { self_contact_.solve(executor_, substep.seconds); }
   // After it a cloth's velocities stay.
   void finish(const Substep &substep, int *speed_limited, Reactions reactions);
   void keep_particles_off(const Substep &substep);
@@ -73,6 +79,8 @@ public:
   std::uint64_t vertex_count() const { return vertices_; }
   std::uint64_t contact_count() const;
   std::uint64_t particle_contact_count() const;
+  std::uint64_t self_contact_count() const { return static_cast<std::uint64_t>(self_contact_.count()); }
+  std::uint64_t self_contact_bytes() const { return self_contact_.bytes(); }
 
 private:
   template <class T> using Array = typename Executor::template Array<T>;
@@ -86,6 +94,7 @@ private:
   };
   struct Cloth {
     Array<Row> positions, velocities, normals;
+    Array<Row> rest;                      // of cloth that collides with itself
     Array<int> triangles, starts, around; // for normals: the triangles around each vertex
     Constraints membrane, hinges;
     Constraints threads; // batches of threads
@@ -130,6 +139,7 @@ private:
     return {executor_.template array<Row>(),
             executor_.template array<Row>(),
             executor_.template array<Row>(),
+            executor_.template array<Row>(),
             executor_.template array<int>(),
             executor_.template array<int>(),
             executor_.template array<int>(),
@@ -145,8 +155,21 @@ private:
             {}};
   }
 
+  // After cloth came or went.
+  void renew_self_contact() {
+    std::vector<typename ClothSelfContact<Executor>::Sheet> sheets;
+    for_each_cloth([&](Cloth &c) {
+      if (c.material.self_distance > 0.0f)
+        sheets.push_back({c.positions.data(), c.velocities.data(), c.rest.data(), c.vertex_count, c.material.self_distance,
+                          c.material.self_friction});
+    });
+    if (!sheets.empty() || self_contact_.any()) self_contact_.set_sheets(executor_, std::move(sheets), particle_capacity_);
+  }
+
   Executor &executor_;
+  std::size_t particle_capacity_;
   std::vector<Cloth> cloths_;
+  ClothSelfContact<Executor> self_contact_{executor_};
   int in_use_ = 0;
   std::uint64_t constraints_ = 0, vertices_ = 0;
 };
@@ -248,6 +271,10 @@ template <class Executor> int ClothSolver<Executor>::add(const SolverCloth &desc
   copy_in(cloth.starts, starts);
   copy_in(cloth.around, around);
   cloth.membrane = interleave<MembraneField>(description.membrane, static_cast<int>(n));
+  if (cloth.material.self_distance > 0.0f) {
+    cloth.rest.reserve(n);
+    executor_.upload(cloth.rest.data(), description.rest.data(), n);
+  }
   cloth.hinges = interleave<HingeField>(description.hinges, static_cast<int>(n));
   add_threads(cloth, description.threads);
   cloth.contact_counter.reserve(1);
@@ -263,6 +290,12 @@ template <class Executor> int ClothSolver<Executor>::add(const SolverCloth &desc
   ++in_use_;
   vertices_ += n;
   constraints_ += constraint_count;
+  try {
+    renew_self_contact();
+  } catch (...) {
+    remove(index);
+    throw;
+  }
   return index;
 }
 
@@ -272,6 +305,7 @@ template <class Executor> void ClothSolver<Executor>::remove(int index) {
   constraints_ -= cloth.constraint_count;
   cloth = make_empty();
   --in_use_;
+  renew_self_contact();
 }
 
 template <class Executor>
@@ -326,10 +360,11 @@ template <class Executor> void ClothSolver<Executor>::map(int index, loam_cloth_
 template <class Executor> std::uint64_t ClothSolver<Executor>::bytes() const {
   std::uint64_t sum = 0;
   for (const Cloth &c : cloths_)
-    sum += c.positions.bytes() + c.velocities.bytes() + c.normals.bytes() + c.triangles.bytes() + c.starts.bytes() +
-           c.around.bytes() + c.membrane.indices.bytes() + c.membrane.fields.bytes() + c.hinges.indices.bytes() +
-           c.hinges.fields.bytes() + c.threads.indices.bytes() + c.threads.fields.bytes() + c.thread_starts.bytes() +
-           c.attachments.bytes() + c.contacts.bytes() + c.contact_counter.bytes() + c.particle_contact.bytes();
+    sum += c.positions.bytes() + c.velocities.bytes() + c.normals.bytes() + c.rest.bytes() + c.triangles.bytes() +
+           c.starts.bytes() + c.around.bytes() + c.membrane.indices.bytes() + c.membrane.fields.bytes() +
+           c.hinges.indices.bytes() + c.hinges.fields.bytes() + c.threads.indices.bytes() + c.threads.fields.bytes() +
+           c.thread_starts.bytes() + c.attachments.bytes() + c.contacts.bytes() + c.contact_counter.bytes() +
+           c.particle_contact.bytes();
   return sum;
 }
 
@@ -354,6 +389,7 @@ template <class Executor> float ClothSolver<Executor>::least_inverse_mass() {
 // --------------------------------------------------------------------------------------------------- a substep ---
 
 template <class Executor> void ClothSolver<Executor>::find_contacts(const Substep &s) {
+  if (self_contact_.any()) self_contact_.find(executor_, s.seconds);
   for_each_cloth([&](Cloth &cloth) {
     const float greatest = executor_.reduce(cloth.vertex_count, GreatestSpeed{cloth.velocities.data()});
     // Twice as far as the fastest vertex goes, and as a fall from rest goes in a few substeps; nothing of the sort of a grid bounds it.
@@ -420,6 +456,7 @@ template <class Executor> void ClothSolver<Executor>::solve_particle_contacts(co
 }
 
 template <class Executor> void ClothSolver<Executor>::finish(const Substep &s, int *speed_limited, Reactions reactions) {
+  if (self_contact_.any()) self_contact_.keep_apart(executor_, s.seconds);
   for_each_cloth([&](Cloth &cloth) {
     Row *velocities = cloth.velocities.data();
     const float fastest = cloth.reach / s.seconds;

@@ -154,7 +154,7 @@ private:
   Executor executor_;
   SmoothingKernel kernel_;
   Schedule schedule_;
-  ClothSolver<Executor> cloth_{executor_};
+  ClothSolver<Executor> cloth_{executor_, static_cast<std::size_t>(settings_.particle_capacity)};
   bool schedule_is_current_ = false, schedule_has_cloth_ = false;
   Surroundings scheduled_; // what the schedule was made for
   std::vector<SolverMaterial> materials_;
@@ -438,6 +438,7 @@ template <class Executor> std::vector<MemoryUse> Solver<Executor>::memory() cons
       collider_views_.bytes() + contacts_.bytes() + shapes_.bytes() + contact_laws_.bytes() + reactions_.bytes();
   if (colliders > 0) uses.push_back({"colliders", colliders});
   if (cloth_.bytes() > 0) uses.push_back({"cloth", cloth_.bytes()});
+  if (cloth_.self_contact_bytes() > 0) uses.push_back({"cloth self contact", cloth_.self_contact_bytes()});
   if (settings_.sleep_speed > 0)
     uses.push_back({"sleep", awake_cells_.bytes() + near_cells_.bytes() + active_cells_.bytes()});
   if (kept_.bytes() > 0) uses.push_back({"kept frame", kept_.bytes()});

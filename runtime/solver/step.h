@@ -50,14 +50,17 @@ template <class Executor> float Solver<Executor>::greatest_mass() {
 }
 
 template <class Executor> void Solver<Executor>::compile_schedule(const Surroundings &surroundings) {
-  const bool cloth = !cloth_.empty();
-  if (schedule_is_current_ && surroundings == scheduled_ && cloth == schedule_has_cloth_) return;
+  const bool cloth = !cloth_.empty(), self_contact = cloth_.any_self_contact();
+  if (schedule_is_current_ && surroundings == scheduled_ && cloth == schedule_has_cloth_ &&
+      self_contact == (schedule_.cloth_self_contact >= 0))
+    return;
   SceneContents contents;
   contents.surroundings = surroundings;
   for (const SolverMaterial &material : materials_) contents.materials.push_back({material.name, material.in_use});
   contents.position_correction = settings_.minimum_distance > 0.0f || contact_between_materials_;
   contents.velocity_smoothing = settings_.velocity_smoothing > 0.0f;
   contents.cloth = cloth;
+  contents.cloth_self_contact = self_contact;
   contents.sleep = settings_.sleep_speed > 0.0f;
   contents.particles =
       std::any_of(materials_.begin(), materials_.end(), [](const SolverMaterial &material) { return material.in_use; });

@@ -132,6 +132,10 @@ template <class Executor> void Solver<Executor>::iterate(const StepInput &input)
     if (!cloth_.empty()) {
       cloth_.solve(cloth_substep(input));
       lap(schedule_.solve_cloth, cloth_.constraint_count());
+      if (schedule_.cloth_self_contact >= 0) {
+        cloth_.solve_self_contacts(cloth_substep(input));
+        lap(schedule_.cloth_self_contact, cloth_.self_contact_count());
+      }
       if (schedule_.cloth_particles >= 0) {
         cloth_.solve_particle_contacts(cloth_substep(input));
         lap(schedule_.cloth_particles, cloth_.particle_contact_count());

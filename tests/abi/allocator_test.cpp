@@ -52,6 +52,7 @@ public:
     const cloths::Grid grid(4, 4, 0.005f);
     loam_cloth_def sheet = cloths::definition(grid);
     sheet.position[1] = 0.075f; // among the particles
+    sheet.self_distance = 0.006f;
     loam_cloth_id cloth = 0;
     attempt("cloth", [&] { return loam_cloth_create(world_, &sheet, &cloth); });
     for (int k = 0; k < 3; ++k) attempt("step", [&] { return loam_world_step(world_, 1e-3f); });

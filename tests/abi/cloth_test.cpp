@@ -57,6 +57,8 @@ TEST_F(ClothAbi, DefinitionsNameTheFieldThatIsWrong) {
                         {"damping", &loam_cloth_def::damping, {-1, 11, nan, infinity}},
                         {"greatest_stretch", &loam_cloth_def::greatest_stretch, {-1, 11, nan, infinity}},
                         {"particle_friction", &loam_cloth_def::particle_friction, {-1, 101, nan, infinity}},
+                        {"self_distance", &loam_cloth_def::self_distance, {-1, 1e-7f, 1e4f, nan, infinity}},
+                        {"self_friction", &loam_cloth_def::self_friction, {-1, 101, nan, infinity}},
                         {"thickness", &loam_cloth_def::thickness, {-1, 1e-7f, 1e4f, nan, infinity}}};
   for (const Case &c : cases)
     for (const float value : c.bad) {
@@ -218,6 +220,28 @@ TEST_F(ClothAbi, StaleIdsAreRecognised) {
     refused(LOAM_ERROR_INVALID_HANDLE, {"cloth"}, [&] { return loam_cloth_set_wind(world(), id, wind, 0, 0); });
     refused(LOAM_ERROR_INVALID_HANDLE, {"cloth"}, [&] { return loam_cloth_unmap(world(), id); });
   }
+}
+
+/* Only what collides with itself pays for it. */
+TEST_F(ClothAbi, SelfContactIsThereWhileACollidingClothIs) {
+  const auto has_stage = [&] {
+    for (const loam_stage &stage : world_.stages())
+      if (std::string(stage.name) == "cloth self contact") return true;
+    return false;
+  };
+  world_.step(1e-3f);
+  EXPECT_FALSE(has_stage());
+  const std::uint64_t memory = world_.memory_bytes();
+  def_.self_distance = 0.01f;
+  loam_cloth_id other = 0;
+  ASSERT_EQ(loam_cloth_create(world(), &def_, &other), LOAM_OK);
+  world_.step(1e-3f);
+  EXPECT_TRUE(has_stage());
+  EXPECT_GT(world_.memory_bytes(), memory);
+  ASSERT_EQ(loam_cloth_destroy(world(), other), LOAM_OK);
+  world_.step(1e-3f);
+  EXPECT_FALSE(has_stage());
+  EXPECT_EQ(world_.memory_bytes(), memory);
 }
 
 /* Stages and memory are there while a cloth is. */

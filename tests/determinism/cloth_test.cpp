@@ -7,7 +7,7 @@
 namespace loam {
 namespace {
 
-/* A sheet that is held at a corner by a spring and falls on a floor in the wind; the hash of what it comes to. Null if the machine lacks the instruction set. */
+/* A sheet that is held at a corner by a spring and falls on a floor in the wind, and another that falls onto it; the hash of what it comes to. Null if the machine lacks the instruction set. */
 std::uint64_t hash_of(std::uint32_t threads, std::uint32_t instruction_set) {
   loam_world_def def = cloths::world_def(5, 4);
   def.thread_count = threads;
@@ -24,9 +24,15 @@ std::uint64_t hash_of(std::uint32_t threads, std::uint32_t instruction_set) {
   const cloths::Grid grid(37, 29, 0.01f);
   loam_cloth_def cloth_def = cloths::definition(grid);
   cloth_def.position[1] = 0.05f;
+  cloth_def.self_distance = 0.012f;
   const cloths::Cloth cloth(world.get(), cloth_def);
   cloth.attach({grid.at(0, 0)}, {}, 0.01f);
   cloth.set_wind(3, 0, 1, 1, 0.5f);
+  const cloths::Grid small(9, 9, 0.01f);
+  loam_cloth_def other_def = cloths::definition(small);
+  other_def.position[1] = 0.09f;
+  other_def.self_distance = 0.01f;
+  const cloths::Cloth other(world.get(), other_def);
   world.add(scenes::drop_block(scenes::sand(), 6, 0.1f));
   for (int frame = 0; frame < 20; ++frame) world.step(1.0f / 60);
   EXPECT_TRUE(cloth.vertices().finite());

@@ -176,6 +176,7 @@ TEST(SnapshotOfCloth, GoesOnWithTheSameBits) {
   const cloths::Grid grid(17, 13, 0.01f);
   loam_cloth_def cloth_def = cloths::definition(grid);
   cloth_def.position[1] = 0.03f;
+  cloth_def.self_distance = 0.012f;
   const cloths::Cloth cloth(world.get(), cloth_def);
   const std::uint32_t corner = grid.at(0, 0), end = grid.at(16, 0);
   cloth.attach({corner}, {}, 0, handle);

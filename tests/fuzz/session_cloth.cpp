@@ -22,6 +22,8 @@ loam_cloth_def random_cloth(Random &random, float r, cloths::Grid &grid) {
   if (random.chance(0.5)) def.greatest_stretch = random.chance(0.5) ? 0 : random.log_between(1e-4, 1);
   if (random.chance(0.5)) def.thickness = std::clamp(r * random.log_between(0.1, 1), 1e-6f, 1e3f);
   if (random.chance(0.5)) def.particle_friction = random.log_between(0.01, 100);
+  if (random.chance(0.4)) def.self_distance = std::clamp(spacing * random.log_between(0.1, 3), 1e-6f, 1e3f);
+  if (random.chance(0.3)) def.self_friction = random.chance(0.3) ? 0 : random.log_between(0.01, 100);
   return def;
 }
 
@@ -142,6 +144,8 @@ void Session::bad_cloth(Random &random) {
                               def.warp,
                               def.velocity,
                               &def.particle_friction,
+                              &def.self_distance,
+                              &def.self_friction,
                               &grid.positions[random.below(grid.positions.size())]};
     const std::uint32_t which = random.below(std::size(numbers) + 3);
     if (which < std::size(numbers)) *numbers[which] = bad;

@@ -300,7 +300,9 @@ const std::string hammock = "[[colliders]]\nname = \"bar\"\nkind = \"sphere\"\nr
                             "stretch_stiffness = 500\n"
                             "wind = { velocity = [1, 2, 3], drag = 0.5 }\n"
                             "attachments = [{ low = [-2, 0, -2], high = [-0.9, 0, 2], collider = \"bar\", release = 3 },\n"
-                            "               { low = [0.9, 0, -2], high = [2, 0, 2], compliance = 0.1 }]\n";
+                            "               { low = [0.9, 0, -2], high = [2, 0, 2], compliance = 0.1 }]\n"
+                            "self_distance = 0.6\n"
+                            "self_friction = 0.2\n";
 
 TEST(RunnerSceneReader, ReadsClothsAndWhatHoldsThem) {
   const TemporaryFolder folder;
@@ -309,6 +311,8 @@ TEST(RunnerSceneReader, ReadsClothsAndWhatHoldsThem) {
   const runner::SceneCloth &cloth = scene.cloths[0];
   EXPECT_EQ(scene.meshes.at(cloth.file).triangle_count(), 16u);
   EXPECT_EQ(cloth.def.stretch_stiffness, 500.0f);
+  EXPECT_EQ(cloth.def.self_distance, 0.6f);
+  EXPECT_EQ(cloth.def.self_friction, 0.2f);
   EXPECT_EQ(cloth.wind_velocity.z, 3.0f);
   EXPECT_EQ(cloth.drag, 0.5f);
   ASSERT_EQ(cloth.attachments.size(), 2u);
@@ -341,7 +345,7 @@ TEST(RunnerSceneReader, RefusesClothsThatCannotBe) {
   expect_mentions(error("release = 3", "release = -3"), {"scene.toml:9:", "release", "0 or more"});
   expect_mentions(error("low = [0.9, 0, -2], ", ""), {"scene.toml:10:", "attachments[1].low", "missing"});
   expect_mentions(scene_error(hammock + "[[colliders]]\nname = \"bar\"\nkind = \"plane\"\n"),
-                  {"scene.toml:12:", "colliders[1].name", "already"});
+                  {"scene.toml:14:", "colliders[1].name", "already"});
 }
 
 } // namespace
