@@ -9,6 +9,8 @@
  *   collider.h   what matter runs into: planes, simple solids, distance grids, triangle meshes
  *   cloth.h      sheets that hang, drape and blow in the wind
  *   emitter.h    matter that streams in
+ *   killer.h     volumes and ages that take it out
+ *   field.h      winds, attractors, blasts
  *   particles.h  fill volumes with particles, read the particles back
  *   snapshot.h   save the state of a world, and go back to it
  *
@@ -22,6 +24,8 @@
 #include <loam/cloth.h>
 #include <loam/collider.h>
 #include <loam/emitter.h>
+#include <loam/field.h>
+#include <loam/killer.h>
 #include <loam/material.h>
 #include <loam/material_design.h>
 #include <loam/particles.h>

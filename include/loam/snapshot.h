@@ -1,8 +1,8 @@
 /* Snapshots: the state of a world in a block of the host's memory, to go back to (rollback, replay, a saved game).
  *
- * A snapshot holds what moves: particles, vertices of cloth with what they are attached to, poses of colliders, how far streams are, wind, gravity, substeps
- * and iterations. It does not hold what the host described once, meshes above all, nor what can be found again: neighbours, contacts, distances to
- * colliders, statistics. So it is restored into a world that was described alike, be it the one that was saved, or one made anew:
+ * A snapshot holds what moves: particles, vertices of cloth with what they are attached to, poses of colliders, how far streams are, where fields and
+ * killers are and which blasts are over, wind, gravity, substeps and iterations. It does not hold what the host described once, meshes above all, nor what
+ * can be found again: neighbours, contacts, distances to colliders, statistics. So it is restored into a world that was described alike, be it the one that was saved, or one made anew:
  *
  *   of loam_world_def     kernel_radius, solver, plasticity, velocity_smoothing, minimum_distance, gradient_cutoff, particle_capacity,
  *                         multiplier, zero_energy_stiffness, sleep_speed, sleep_delay
@@ -11,10 +11,11 @@
  *   colliders             the same places, kind, contacts, dimensions, meshes and grids
  *   cloths                the same places, mesh and definition, but for where the cloth began
  *   emitters              the same places and definitions, but for where the nozzle began and when_full
+ *   fields and killers    the same places and definitions, but for their positions and rotations
  *
  * Everything else may differ: threads, instruction set, job system, allocator, pair_capacity, backend. From then on the world steps as the saved one
- * did, with the same bits where it runs on the same backend. Ids of materials, colliders, cloths and emitters stay those of the world that is restored; ids of
- * particles become those of the snapshot. Free memory of the world is neither taken nor given back, but for materials and attachments that
+ * did, with the same bits where it runs on the same backend. Ids of particles become those of the snapshot, all others stay those of the world that is
+ * restored. Free memory of the world is neither taken nor given back, but for materials and attachments that
  * need more than the world ever had.
  *
  * The format is little-endian on every machine that the library runs on, begins with "LOAMSNAP" and the version of the format below, and has a
@@ -35,7 +36,7 @@
 extern "C" {
 #endif
 
-#define LOAM_SNAPSHOT_VERSION 2
+#define LOAM_SNAPSHOT_VERSION 3
 
 /* The bytes that a snapshot of the world as it is now takes, exactly. Reads part of the particles, and so takes about a quarter of the time of saving.
  * Errors: INVALID_ARGUMENT for null. */

@@ -177,8 +177,8 @@ LOAM_API loam_status loam_world_wake(loam_world *world);
 LOAM_API loam_status loam_world_get_backend(const loam_world *world, uint32_t *backend, uint32_t *instruction_set);
 
 /* A 64-bit hash of the state of all matter: of each particle its place in the solver's order, position, velocity, strain, volumes, mass, what its law
- * remembers, id and material; of each vertex of cloth its position, velocity and mass; of each emitter how far its stream is. It does not cover what the
- * host says: definitions, gravity, poses of colliders, wind, attachments. Same build, backend and inputs: same hash, for any number of threads and any
+ * remembers, id, material and, where a killer asks, age; of each vertex of cloth its position, velocity and mass; of each emitter how far its stream is.
+ * It does not cover what the host says: definitions, gravity, poses of colliders, wind, attachments. Same build, backend and inputs: same hash, for any number of threads and any
  * instruction set; and two worlds that were told the same and have equal hashes step alike. */
 LOAM_API loam_status loam_world_state_hash(const loam_world *world, uint64_t *hash);
 
@@ -232,6 +232,8 @@ typedef struct loam_statistics {
   uint64_t particles_entered;
   uint64_t particles_dropped;
   uint64_t capacity_needed;
+
+  uint64_t particles_killed; /* by killers, at the end of the step */
 } loam_statistics;
 
 /* Errors: INVALID_ARGUMENT for null or an unknown struct_size. */

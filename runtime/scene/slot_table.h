@@ -16,7 +16,9 @@ enum class IdKind : std::uint8_t {
   material = 1,
   collider = 2,
   cloth = 3,
-  emitter = 4
+  emitter = 4,
+  field = 5,
+  killer = 6
 }; // at most 7: an id of one kind is never good for another
 
 template <class T> class SlotTable {

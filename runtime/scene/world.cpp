@@ -87,7 +87,7 @@ using namespace loam;
 loam_world::loam_world(const loam_world_def &def)
     : def_(def), tag_(next_tag()), materials_(IdKind::material, "material", tag_, 4096),
       colliders_(IdKind::collider, "collider", tag_, 4096), cloths_(tag_, 0.5f * def.kernel_radius),
-      emitters_(tag_, next_id_) {
+      emitters_(tag_, next_id_), fields_(tag_, def.kernel_radius), killers_(tag_) {
   execution_ = {def.allocator, def.job_system, def.thread_count, def.instruction_set};
   if (execution_.instruction_set == LOAM_INSTRUCTION_SET_AUTO) execution_.instruction_set = best_instruction_set();
   if (kernel_table(execution_.instruction_set) == nullptr)
@@ -168,7 +168,9 @@ void loam_world::check_not_stepping() const {
   if (busy_) throw Error(LOAM_ERROR_BUSY, "an asynchronous step was begun; call loam_world_wait first");
 }
 
-const loam::Schedule &loam_world::schedule() const { return backend_->schedule({!colliders_.empty(), emitters_.any()}); }
+const loam::Schedule &loam_world::schedule() const {
+  return backend_->schedule({!colliders_.empty(), emitters_.any(), fields_.any(), killers_.any()});
+}
 
 void loam_world::run_step(float seconds) {
   input_.seconds = seconds;
@@ -183,11 +185,16 @@ void loam_world::run_step(float seconds) {
     }
   cloths_.use_colliders(backend_->cloth(), index_of_slot_);
   input_.source = emitters_.any() ? &emitters_ : nullptr;
+  fields_.list(input_.fields);
+  killers_.begin_step(input_.killers);
+  removed_.assign(input_.killers.empty() ? 0 : materials_.size(), 0);
+  input_.removed = &removed_;
   try {
     backend_->step(input_);
     input_.wake = false;
   } catch (const Error &) {
     (void)count_streams();
+    fields_.advance(static_cast<double>(seconds), input_.substeps, backend_->statistics().substeps_done);
     // Colliders stop with the particles, at the end of the last whole substep.
     const double share = static_cast<double>(backend_->statistics().substeps_done) / input_.substeps;
     for (std::size_t i = 0; i < colliders_.size(); ++i)
@@ -196,12 +203,26 @@ void loam_world::run_step(float seconds) {
   }
   for (std::size_t i = 0; i < colliders_.size(); ++i)
     if (Collider *c = colliders_.at_index(i); c != nullptr) c->pose = c->target;
-  if (const std::uint64_t untold = count_streams(); untold > 0)
+  fields_.advance(static_cast<double>(seconds), input_.substeps, input_.substeps);
+  const std::uint64_t untold = count_streams();
+  count_killed();
+  if (untold > 0)
     throw Error(LOAM_ERROR_CAPACITY,
                 format("%llu particles of streams found no room and were dropped; the step was done. particle_capacity is "
                        "%llu and would have to be %llu so far",
                        static_cast<unsigned long long>(untold), static_cast<unsigned long long>(def_.particle_capacity),
                        static_cast<unsigned long long>(capacity_needed())));
+}
+
+void loam_world::count_killed() {
+  killers_.end_step();
+  bool changed = false;
+  for (std::size_t i = 0; i < removed_.size(); ++i)
+    if (Material *m = removed_[i] > 0 ? materials_.at_index(i) : nullptr; m != nullptr) {
+      m->particles -= removed_[i];
+      changed = changed || (m->particles == 0 && m->emitters == 0);
+    }
+  if (changed) send_materials(); // fewer in use: needs no memory
 }
 
 // What streamed in, into the books. Answers how many were dropped that the host wants to be told of.
@@ -251,6 +272,8 @@ void loam_world::shift_origin(const float offset[3]) {
       c->target.position = c->target.position - by;
     }
   emitters_.for_each([&](Emitter &emitter) { emitter.shift_origin(by); });
+  fields_.shift_origin(by);
+  killers_.shift_origin(by);
 }
 
 void loam_world::set_gravity(const float gravity[3]) {
@@ -358,6 +381,8 @@ void loam_world::destroy_material(loam_material_id id) {
     throw Error(LOAM_ERROR_IN_USE,
                 format("material \"%s\" has %llu particles", m.def.name, static_cast<unsigned long long>(m.particles)));
   const std::size_t slot = materials_.index_of(id, "material");
+  if (killers_.any_of_material(static_cast<int>(slot)))
+    throw Error(LOAM_ERROR_IN_USE, format("material \"%s\" has a killer of its own", m.def.name));
   std::erase_if(contacts_, [slot](const Contact &c) { return c.a == slot || c.b == slot; });
   for (std::size_t i = 0; i < colliders_.size(); ++i)
     if (Collider *c = colliders_.at_index(i); c != nullptr)
@@ -497,6 +522,57 @@ void loam_world::destroy_emitter(loam_emitter_id id) {
   --materials_.at(emitter.material(), "material").emitters;
   emitters_.remove(id);
   send_materials();
+}
+
+// --------------------------------------------------------------------------------------------- fields and killers ---
+
+loam_field_id loam_world::create_field(const loam_field_def &def) {
+  const loam_field_id id = fields_.create(def);
+  input_.wake = true;
+  return id;
+}
+
+void loam_world::set_field(loam_field_id id, const loam_field_def &def) {
+  fields_.set(id, def);
+  input_.wake = true;
+}
+
+void loam_world::destroy_field(loam_field_id id) {
+  fields_.destroy(id);
+  input_.wake = true;
+}
+
+int loam_world::killer_material(const loam_killer_def &def) const {
+  return def.material == 0 ? -1 : static_cast<int>(materials_.index_of(def.material, "material"));
+}
+
+loam_killer_id loam_world::create_killer(const loam_killer_def &def) {
+  check_unmapped();
+  KillerScene::check(def);
+  const int material = killer_material(def);
+  const loam_killer_id id = killers_.create(def, material);
+  try {
+    backend_->keep_ages(killers_.any_of_age());
+  } catch (...) {
+    killers_.destroy(id);
+    throw;
+  }
+  return id;
+}
+
+void loam_world::set_killer(loam_killer_id id, const loam_killer_def &def) {
+  check_unmapped();
+  const KillerScene::Killer &killer = killers_.at(id);
+  KillerScene::check(def);
+  const int material = killer_material(def);
+  backend_->keep_ages(def.kind == LOAM_KILLER_AGE || killers_.any_of_age(&killer));
+  killers_.set(id, def, material);
+}
+
+void loam_world::destroy_killer(loam_killer_id id) {
+  check_unmapped();
+  killers_.destroy(id);
+  backend_->keep_ages(killers_.any_of_age());
 }
 
 // ----------------------------------------------------------------------------------------------------- particles ---

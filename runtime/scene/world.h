@@ -7,6 +7,8 @@
 
 #include "scene/cloth.h"
 #include "scene/emitter.h"
+#include "scene/field.h"
+#include "scene/killer.h"
 #include "scene/slot_table.h"
 #include "scene/step_thread.h"
 #include "solver/backend.h"
@@ -65,6 +67,13 @@ public:
   loam_emitter_id create_emitter(const loam_emitter_def &def);
   void destroy_emitter(loam_emitter_id id);
   loam_emitter_report emitter_report(loam_emitter_id id) const { return emitters_.at(id).report(); }
+  loam_field_id create_field(const loam_field_def &def);
+  void set_field(loam_field_id id, const loam_field_def &def);
+  void destroy_field(loam_field_id id);
+  loam_killer_id create_killer(const loam_killer_def &def);
+  void set_killer(loam_killer_id id, const loam_killer_def &def);
+  void destroy_killer(loam_killer_id id);
+  const loam::KillerScene &killers() const { return killers_; }
   std::uint64_t capacity_needed() const; // that would have left no particle of a stream without room; 0: there was room
   std::uint64_t state_hash() { return emitters_.hash(backend_->state_hash()); }
 
@@ -110,6 +119,8 @@ private:
   void check_state(const loam::SnapshotReader &snapshot, const std::vector<loam::StateSection> &state,
                    std::uint64_t next_id) const;
   std::uint64_t count_streams();
+  void count_killed();
+  int killer_material(const loam_killer_def &def) const;
   void check_unmapped() const;
   void check_step(float seconds) const;
   void run_step(float seconds);
@@ -131,6 +142,9 @@ private:
   std::vector<int> index_of_slot_; // while there is cloth: where each of colliders_ is among those of the step
   std::uint64_t next_id_ = 0;      // of particles; those of removed ones do not come back
   loam::EmitterScene emitters_;
+  loam::FieldScene fields_;
+  loam::KillerScene killers_;
+  std::vector<std::uint64_t> removed_; // by killers in a step, by material
   std::unique_ptr<loam::Backend> backend_;
   loam::StepInput input_{};
   std::uint64_t dropped_ = 0; // of all streams so far

@@ -25,6 +25,13 @@ struct loam_world::Moving {
   std::vector<ClothScene::Changes> cloths;
   std::uint64_t dropped; // of all streams so far
   std::vector<EmitterState> emitters;
+  std::vector<FieldScene::Changes> fields;
+  struct KillerChanges {
+    Pose pose;
+    std::uint32_t reserved; // 0
+    std::uint64_t total;
+  };
+  std::vector<KillerChanges> killers;
 };
 
 namespace {
@@ -139,8 +146,13 @@ float float_of(std::uint32_t word) {
 } // namespace
 
 loam_world::Moving loam_world::moving() const {
-  Moving moving = {
-      input_.substeps, input_.iterations, input_.gravity, next_id_, input_.wake ? 1u : 0u, {}, {}, dropped_, {}};
+  Moving moving = {};
+  moving.substeps = input_.substeps;
+  moving.iterations = input_.iterations;
+  moving.gravity = input_.gravity;
+  moving.next_id = next_id_;
+  moving.wake = input_.wake ? 1 : 0;
+  moving.dropped = dropped_;
   for (std::size_t i = 0; i < colliders_.size(); ++i) {
     const Collider *c = colliders_.at_index(i);
     moving.colliders.push_back(c != nullptr ? Moving::Poses{c->pose, c->target} : Moving::Poses{});
@@ -149,6 +161,12 @@ loam_world::Moving loam_world::moving() const {
     moving.cloths.push_back(cloths_.description(i) != nullptr ? cloths_.changes(i) : ClothScene::Changes());
   for (std::size_t i = 0; i < emitters_.slot_count(); ++i)
     moving.emitters.push_back(emitters_.at_slot(i) != nullptr ? emitters_.at_slot(i)->state() : EmitterState());
+  for (std::size_t i = 0; i < fields_.slot_count(); ++i)
+    moving.fields.push_back(fields_.at_slot(i) != nullptr ? fields_.at_slot(i)->changes : FieldScene::Changes());
+  for (std::size_t i = 0; i < killers_.slot_count(); ++i)
+    moving.killers.push_back(killers_.at_slot(i) != nullptr
+                                 ? Moving::KillerChanges{killers_.at_slot(i)->view.pose, 0, killers_.at_slot(i)->total}
+                                 : Moving::KillerChanges());
   return moving;
 }
 
@@ -276,6 +294,44 @@ template <class Fields> void loam_world::exchange(Fields &fields, Moving &moving
   }
   fields.value(moving.dropped);
 
+  const auto field_at = [&](std::size_t i) { return fields_.at_slot(i); };
+  const std::uint32_t forces = used_slots(fields_.slot_count(), field_at);
+  fields.at("fields", 0);
+  fields.same("number of fields", forces);
+  for (std::size_t i = 0; i < forces; ++i) {
+    fields.at("field", i);
+    const FieldScene::Field *f = field_at(i);
+    fields.same("presence", static_cast<std::uint32_t>(f != nullptr));
+    if (f == nullptr) continue;
+    fields.same("kind", f->def.kind);
+    for (const float component : f->def.velocity) fields.same("velocity", component);
+    fields.same("rate", f->def.rate);
+    fields.same("strength", f->def.strength);
+    fields.same("softening", f->def.softening);
+    fields.same("speed", f->def.speed);
+    fields.same("radius", f->def.radius);
+    fields.same("time", f->def.time);
+    fields.value(moving.fields[i]);
+  }
+
+  const auto killer_at = [&](std::size_t i) { return killers_.at_slot(i); };
+  const std::uint32_t killers = used_slots(killers_.slot_count(), killer_at);
+  fields.at("killers", 0);
+  fields.same("number of killers", killers);
+  for (std::size_t i = 0; i < killers; ++i) {
+    fields.at("killer", i);
+    const KillerScene::Killer *k = killer_at(i);
+    fields.same("presence", static_cast<std::uint32_t>(k != nullptr));
+    if (k == nullptr) continue;
+    fields.same("kind", k->def.kind);
+    fields.same("material", static_cast<std::uint32_t>(k->view.material + 1));
+    for (const float half_extent : k->def.half_extents) fields.same("half_extents", half_extent);
+    fields.same("radius", k->def.radius);
+    fields.same("age", k->def.age);
+    fields.same("outside", k->def.outside);
+    fields.value(moving.killers[i]);
+  }
+
   fields.value(moving.substeps);
   fields.value(moving.iterations);
   fields.value(moving.gravity);
@@ -306,6 +362,10 @@ void loam_world::check(const Moving &moving) const {
     }
   for (std::size_t i = 0; i < emitters_.slot_count(); ++i)
     if (const Emitter *e = emitters_.at_slot(i); e != nullptr) e->check_state(moving.emitters[i], moving.next_id);
+  for (std::size_t i = 0; i < fields_.slot_count(); ++i)
+    if (fields_.at_slot(i) != nullptr) FieldScene::check(moving.fields[i]);
+  for (std::size_t i = 0; i < killers_.slot_count(); ++i)
+    if (killers_.at_slot(i) != nullptr) check_pose(moving.killers[i].pose);
 }
 
 // ------------------------------------------------------------------------------------------------------- saving ---
@@ -440,6 +500,14 @@ void loam_world::restore(const std::byte *memory, std::uint64_t bytes) {
   dropped_ = moving.dropped;
   for (std::size_t i = 0; i < emitters_.slot_count(); ++i)
     if (Emitter *e = emitters_.at_slot(i); e != nullptr) e->set_state(moving.emitters[i]);
+  for (std::size_t i = 0; i < fields_.slot_count(); ++i)
+    if (FieldScene::Field *f = fields_.at_slot(i); f != nullptr) f->changes = moving.fields[i];
+  for (std::size_t i = 0; i < killers_.slot_count(); ++i)
+    if (KillerScene::Killer *k = killers_.at_slot(i); k != nullptr) {
+      k->view.pose = moving.killers[i].pose;
+      k->total = moving.killers[i].total;
+      k->killed.clear();
+    }
   for (std::size_t i = 0; i < colliders_.size(); ++i)
     if (Collider *c = colliders_.at_index(i); c != nullptr) {
       c->pose = moving.colliders[i].pose;

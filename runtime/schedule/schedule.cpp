@@ -17,6 +17,7 @@ void Schedule::compile(const SceneContents &contents) {
   order = add("visit order");
   gradients = add("gradients");
   forces = add("forces");
+  if (contents.surroundings.fields) fields = add("fields");
   if (contents.surroundings.colliders) find_contacts = add("find contacts");
   if (contents.cloth && (contents.surroundings.colliders || contents.particles || contents.cloth_self_contact))
     find_cloth_contacts = add("find cloth contacts");
@@ -38,6 +39,7 @@ void Schedule::compile(const SceneContents &contents) {
   if (contents.cloth) finish_cloth = add("finish cloth");
   if (contents.sleep) sleep = add("sleep");
   if (contents.surroundings.emitters) emitters = add("emitters");
+  if (contents.surroundings.killers) killers = add("killers");
   statistics = add("statistics");
 }
 

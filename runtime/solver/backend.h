@@ -12,6 +12,8 @@
 
 #include "kernels/contact/contact_law.h"
 #include "kernels/contact/pose.h"
+#include "kernels/integration/fields.h"
+#include "kernels/integration/killers.h"
 #include "kernels/materials/laws.h"
 #include "schedule/schedule.h"
 #include "solver/cloth_backend.h"
@@ -73,6 +75,19 @@ struct ColliderState {
   ColliderReaction *reaction = nullptr; // receives it; null: not asked for
 };
 
+struct FieldState {
+  FieldKind kind;
+  Vec3<float> centre, velocity;
+  float radius, softening; // m
+  double strength;         // wind: 1/s; attractor: m^3/s^2; blast: m/s
+  double wait;             // blast: seconds from the step's beginning; under 0: it is over
+};
+
+struct KillerState {
+  KillerView view;
+  std::vector<std::uint32_t> *killed; // receives the ids of the step
+};
+
 struct StepInput {
   float seconds;
   std::uint32_t substeps, iterations;
@@ -81,8 +96,11 @@ struct StepInput {
   bool wake = false;                // all that sleeps
   float stiffness_share = 1;        // the least of the materials; for the statistics
   ParticleSource *source = nullptr; // where there are emitters
+  std::vector<FieldState> fields = {};
+  std::vector<KillerState> killers = {};
+  std::vector<std::uint64_t> *removed = nullptr; // where there are killers: receives how many of each material went
 
-  Surroundings surroundings() const { return {!colliders.empty(), source != nullptr}; }
+  Surroundings surroundings() const { return {!colliders.empty(), source != nullptr, !fields.empty(), !killers.empty()}; }
 };
 
 struct NewParticles {
@@ -112,6 +130,8 @@ public:
   // Both throw Error and change nothing for an id that no particle has, or that is named twice. Answers how many of each material went.
   virtual std::vector<std::uint64_t> remove_particles(const std::uint32_t *ids, std::uint64_t count) = 0;
   virtual void release_particles(const Release &release) = 0;
+  // Whether particles have ages; they begin at 0. Throws Error OUT_OF_MEMORY.
+  virtual void keep_ages(bool keep) = 0;
   virtual void set_motion(const ParticleMotion &motion) = 0;
   virtual std::uint64_t particle_count() const = 0;
   // Throws Error; then the particles stand at the end of the last whole substep, and `statistics.substeps_done` says of which.

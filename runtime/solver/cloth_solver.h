@@ -55,6 +55,11 @@ public:
   std::uint64_t hash(std::uint64_t hash);
   float least_inverse_mass(); // of a vertex that can move; LeastInverseMass::identity() where none can
 
+  // Calls f(vertex count, positions, velocities) for each cloth.
+  template <class F> void for_each_sheet(F &&f) {
+    for_each_cloth([&](Cloth &cloth) { f(cloth.vertex_count, cloth.positions.data(), cloth.velocities.data()); });
+  }
+
   // What a substep needs to know.
   struct Substep {
     float seconds;

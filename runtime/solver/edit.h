@@ -37,12 +37,19 @@ std::vector<std::uint64_t> Solver<Executor>::remove_particles(const std::uint32_
   std::vector<std::uint64_t> removed(materials_.size(), 0);
   if (count == 0) return removed;
   std::vector<std::uint32_t> holes = places_of(ids, static_cast<std::size_t>(count));
-  std::sort(holes.begin(), holes.end());
-  std::vector<std::uint32_t> materials(static_cast<std::size_t>(count_)), fillers;
+  std::vector<std::uint32_t> materials(static_cast<std::size_t>(count_));
   executor_.session([&] { executor_.download(materials.data(), now_.materials.data(), materials.size()); });
   for (const std::uint32_t i : holes) ++removed[materials[i]];
+  executor_.session([&] { fill_holes(holes); });
+  return removed;
+}
 
-  const auto left = static_cast<std::uint32_t>(count_) - static_cast<std::uint32_t>(count);
+// Takes out the particles in these places, which it sorts. Within a session.
+template <class Executor> void Solver<Executor>::fill_holes(std::vector<std::uint32_t> &holes) {
+  std::sort(holes.begin(), holes.end());
+  std::vector<std::uint32_t> &fillers = fillers_;
+  fillers.clear();
+  const auto left = static_cast<std::uint32_t>(count_) - static_cast<std::uint32_t>(holes.size());
   const auto behind = std::lower_bound(holes.begin(), holes.end(), left); // holes from here on are cut off
   auto hole = behind;
   for (std::uint32_t i = left; i < static_cast<std::uint32_t>(count_); ++i) {
@@ -52,13 +59,10 @@ std::vector<std::uint64_t> Solver<Executor>::remove_particles(const std::uint32_
       fillers.push_back(i);
   }
   const int moved = static_cast<int>(fillers.size());
-  executor_.session([&] {
-    executor_.upload(order_.data(), holes.data(), fillers.size());
-    executor_.upload(keys_.data(), fillers.data(), fillers.size());
-    executor_.for_each(moved, FillHoles{now_.arrays(), order_.data(), keys_.data()});
-  });
+  executor_.upload(order_.data(), holes.data(), fillers.size());
+  executor_.upload(keys_.data(), fillers.data(), fillers.size());
+  executor_.for_each(moved, FillHoles{now_.arrays(), order_.data(), keys_.data()});
   count_ = static_cast<int>(left);
-  return removed;
 }
 
 template <class Executor> void Solver<Executor>::set_motion(const ParticleMotion &motion) {

@@ -21,6 +21,7 @@
 #include "solver/collider_reactions.h"
 #include "solver/collider_shapes.h"
 #include "solver/contact_laws.h"
+#include "solver/fields.h"
 #include "solver/stages.h"
 
 namespace loam {
@@ -37,6 +38,7 @@ public:
   void release_particles(const Release &release) override {
     executor_.session([&] { this->release(release); });
   }
+  void keep_ages(bool keep) override;
   void set_motion(const ParticleMotion &motion) override;
   std::uint64_t particle_count() const override { return static_cast<std::uint64_t>(count_); }
   void step(const StepInput &input) override;
@@ -67,15 +69,16 @@ private:
     Array<std::uint32_t> ids, materials;
     Array<float> free_distances; // while there are colliders
     Array<float> rests;          // where something may sleep
+    Array<float> ages;           // while a killer asks
     ParticleArrays arrays() {
       return {positions.data(), velocities.data(),     strains.data(),      histories.data(),
               drifts.data(),    log_volumes.data(),    rest_volumes.data(), ids.data(),
-              materials.data(), free_distances.data(), rests.data()};
+              materials.data(), free_distances.data(), rests.data(),        ages.data()};
     }
     std::uint64_t bytes() const {
       return positions.bytes() + velocities.bytes() + strains.bytes() + histories.bytes() + drifts.bytes() +
              log_volumes.bytes() + rest_volumes.bytes() + ids.bytes() + materials.bytes() + free_distances.bytes() +
-             rests.bytes();
+             rests.bytes() + ages.bytes();
     }
   };
   ParticleStorage make_storage() {
@@ -84,7 +87,7 @@ private:
             executor_.template array<float>(),         executor_.template array<float>(),
             executor_.template array<float>(),         executor_.template array<std::uint32_t>(),
             executor_.template array<std::uint32_t>(), executor_.template array<float>(),
-            executor_.template array<float>()};
+            executor_.template array<float>(),         executor_.template array<float>()};
   }
   void reserve_storage(ParticleStorage &storage, std::size_t rows);
   void reserve_histories();
@@ -101,6 +104,9 @@ private:
   void drop(std::uint64_t count) override;
   void set_unstrained(std::size_t at, int count, std::uint32_t material, float volume);
 
+  void fill_holes(std::vector<std::uint32_t> &holes);
+  void prepare_killers(const StepInput &input); // in killing.h, as is kill()
+  void kill(const StepInput &input);
   std::vector<std::uint32_t> places_of(const std::uint32_t *ids, std::size_t count);
 
   // The parts of a substep, in substep.h.
@@ -192,6 +198,14 @@ private:
   ColliderShapes<Executor> shapes_{executor_};
   ContactLaws<Executor> contact_laws_{executor_};
   ColliderReactions<Executor> reactions_{executor_};
+  Fields<Executor> fields_{executor_};
+  Array<KillerView> killer_views_;
+  struct Killed { // the host's lists of a step
+    std::vector<KillerView> killers;
+    std::vector<std::uint32_t> places, killer_of, ids, materials;
+  };
+  Killed killed_;
+  std::vector<std::uint32_t> fillers_;             // of holes
   std::vector<ColliderView> views_, views_before_; // of this substep and the one before
   ColliderMotion collider_motion_;
   bool free_distances_hold_ = false; // what they say was true at the end of views_before_
@@ -223,7 +237,8 @@ Solver<Executor>::Solver(const SolverSettings &settings, const ExecutionSettings
                                                                  executor_.template array<Row>(),
                                                                  executor_.template array<Row>()},
       jacobi_drift_rows_{executor_.template array<Row>(), executor_.template array<Row>(), executor_.template array<Row>()},
-      collider_views_(executor_.template array<ColliderView>()), contacts_(executor_.template array<Contact>()) {
+      killer_views_(executor_.template array<KillerView>()), collider_views_(executor_.template array<ColliderView>()),
+      contacts_(executor_.template array<Contact>()) {
   const auto capacity = static_cast<std::size_t>(settings_.particle_capacity);
   spare_row_ = capacity;
   keys_.reserve(capacity);
@@ -439,6 +454,8 @@ template <class Executor> std::vector<MemoryUse> Solver<Executor>::memory() cons
   if (colliders > 0) uses.push_back({"colliders", colliders});
   if (cloth_.bytes() > 0) uses.push_back({"cloth", cloth_.bytes()});
   if (cloth_.self_contact_bytes() > 0) uses.push_back({"cloth self contact", cloth_.self_contact_bytes()});
+  if (fields_.bytes() > 0) uses.push_back({"fields", fields_.bytes()});
+  if (killer_views_.bytes() > 0) uses.push_back({"killers", killer_views_.bytes()});
   if (settings_.sleep_speed > 0)
     uses.push_back({"sleep", awake_cells_.bytes() + near_cells_.bytes() + active_cells_.bytes()});
   if (kept_.bytes() > 0) uses.push_back({"kept frame", kept_.bytes()});
@@ -449,6 +466,7 @@ template <class Executor> std::vector<MemoryUse> Solver<Executor>::memory() cons
 } // namespace loam
 
 #include "solver/edit.h"
+#include "solver/killing.h"
 #include "solver/state.h"
 #include "solver/step.h"
 #include "solver/streams.h"

@@ -11,7 +11,7 @@ template <class Executor> void Solver<Executor>::step(const StepInput &input) {
   up_ = g > 0.0f ? (-1.0f / g) * input.gravity : Vec3<float>{0, 1, 0};
   statistics_.substeps_done = 0;
   statistics_.pair_visits = 0;
-  statistics_.particles_entered = statistics_.particles_dropped = 0;
+  statistics_.particles_entered = statistics_.particles_dropped = statistics_.particles_killed = 0;
   statistics_.step_seconds = 0;
   residual_ = 0;
   virial_moment_ = 0;
@@ -24,10 +24,13 @@ template <class Executor> void Solver<Executor>::step(const StepInput &input) {
   executor_.session([&] {
     reactions_.prepare(input.colliders, static_cast<double>(settings_.kernel_radius),
                        static_cast<double>(input.seconds) / input.substeps, [this] { return greatest_mass(); });
+    fields_.prepare(input.fields, static_cast<double>(input.seconds) / input.substeps, input.substeps);
+    prepare_killers(input);
     // Cloth cannot tell whom it touches, so nothing sleeps beside it.
     if ((input.wake || !cloth_.empty()) && schedule_.sleep >= 0) wake_all();
     if (count_ > 0 || !cloth_.empty() || input.source != nullptr)
       for (std::uint32_t i = 0; i < input.substeps; ++i) {
+        if (schedule_.sleep >= 0 && fields_.wake(count_, now_.positions.data(), now_.rests.data(), i)) awake_ = 1;
         const bool idle = schedule_.sleep >= 0 && count_ > 0 && all_asleep(input, i) && cloth_.empty();
         if (!idle) substep(input, i);
         if (input.source != nullptr) let_in(*input.source, static_cast<double>(input.seconds) / input.substeps);
@@ -35,6 +38,7 @@ template <class Executor> void Solver<Executor>::step(const StepInput &input) {
         statistics_.pairs = pairs_;
         statistics_.pair_visits += pairs_ * input.iterations;
       }
+    kill(input);
     finish_statistics(input);
     reactions_.read(input.colliders);
   });

@@ -11,6 +11,10 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
   if (count_ > 0) search_neighbours(); // sort by cell; lists, corrected gradients and constraint records on x^n
   ex.for_each(count_, ApplyForces{now_.velocities.data(), h_ * input.gravity});
   lap(schedule_.forces, particles());
+  if (schedule_.fields >= 0) {
+    fields_.apply(count_, now_.positions.data(), now_.velocities.data(), index, true);
+    lap(schedule_.fields, particles());
+  }
   try {
     prepare_contacts(input, index);
     if (!cloth_.empty()) {
@@ -28,6 +32,12 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
   if (!cloth_.empty()) {
     cloth_.prepare(cloth_substep(input));
     lap(schedule_.prepare_cloth, cloth_.constraint_count());
+    if (schedule_.fields >= 0) {
+      cloth_.for_each_sheet([&](int vertices, const Row *positions, Row *velocities) {
+        fields_.apply(vertices, positions, velocities, index, false);
+      });
+      lap(schedule_.fields, cloth_.vertex_count());
+    }
   }
 
   iterate(input);

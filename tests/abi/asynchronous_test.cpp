@@ -198,6 +198,10 @@ TEST_F(SmallWorld, EveryFunctionSaysWhetherItMayBeCalledDuringAStep) {
   ASSERT_EQ(loam_cloth_attachment_def_default(&attachment, sizeof attachment), LOAM_OK);
   loam_emitter_def emitter;
   ASSERT_EQ(loam_emitter_def_default(&emitter, sizeof emitter), LOAM_OK);
+  loam_field_def field;
+  loam_killer_def killer;
+  ASSERT_EQ(loam_field_def_default(&field, sizeof field), LOAM_OK);
+  ASSERT_EQ(loam_killer_def_default(&killer, sizeof killer), LOAM_OK);
   loam_emitter_report emitter_report = {};
   emitter_report.struct_size = sizeof emitter_report;
   loam_material_def material = scene_.material;
@@ -235,6 +239,13 @@ TEST_F(SmallWorld, EveryFunctionSaysWhetherItMayBeCalledDuringAStep) {
       {"loam_emitter_create", [&] { return loam_emitter_create(w, &emitter, &id); }},
       {"loam_emitter_destroy", [&] { return loam_emitter_destroy(w, 1); }},
       {"loam_emitter_get_report", [&] { return loam_emitter_get_report(w, 1, &emitter_report); }},
+      {"loam_field_create", [&] { return loam_field_create(w, &field, &id); }},
+      {"loam_field_set", [&] { return loam_field_set(w, 1, &field); }},
+      {"loam_field_destroy", [&] { return loam_field_destroy(w, 1); }},
+      {"loam_killer_create", [&] { return loam_killer_create(w, &killer, &id); }},
+      {"loam_killer_set", [&] { return loam_killer_set(w, 1, &killer); }},
+      {"loam_killer_destroy", [&] { return loam_killer_destroy(w, 1); }},
+      {"loam_killer_get_killed", [&] { return loam_killer_get_killed(w, 1, nullptr, nullptr, 0, &number); }},
       {"loam_particles_fill", [&] { return loam_particles_fill(w, &fill, nullptr); }},
       {"loam_particles_add", [&] { return loam_particles_add(w, &add, nullptr); }},
       {"loam_particles_remove", [&] { return loam_particles_remove(w, &count, 1); }},

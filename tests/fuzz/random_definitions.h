@@ -57,5 +57,10 @@ void spoil(loam_particles_def &def, Random &random, ParticleArrays &arrays);
 /* Without the material. A layer may have more particles than the world has room for. */
 loam_emitter_def random_emitter(Random &random, float r, meshes::Mesh &mesh);
 void spoil(loam_emitter_def &def, Random &random);
+loam_field_def random_field(Random &random, float r);
+void spoil(loam_field_def &def, Random &random);
+/* Of all materials. */
+loam_killer_def random_killer(Random &random, float r);
+void spoil(loam_killer_def &def, Random &random);
 
 } // namespace loam::fuzz

@@ -64,4 +64,84 @@ void spoil(loam_emitter_def &def, Random &random) {
   }
 }
 
+loam_field_def random_field(Random &random, float r) {
+  loam_field_def def;
+  loam_field_def_default(&def, sizeof def);
+  def.kind = random.below(LOAM_FIELD_BLAST + 1);
+  float unused[4];
+  random_place(random, r, def.position, unused);
+  for (float &v : def.velocity) v = std::clamp(r * random.between(-100, 100), -1e6f, 1e6f);
+  def.rate = random.log_between(0.01, 1e5);
+  def.strength = std::min(1e12f, r * r * r * random.log_between(0.1, 1e5)) * (random.chance(0.3) ? -1.0f : 1.0f);
+  def.softening = r * random.log_between(0.02, 10);
+  def.speed = std::min(1e6f, r * random.log_between(0.1, 1000)) * (random.chance(0.3) ? -1.0f : 1.0f);
+  def.radius = r * random.log_between(0.5, 20);
+  if (def.kind == LOAM_FIELD_WIND && random.chance(0.5)) def.radius = 0;
+  if (random.chance(0.7)) def.time = random.between(0, 0.1);
+  return def;
+}
+
+void spoil(loam_field_def &def, Random &random) {
+  switch (random.below(6)) {
+  case 0:
+    def.position[random.below(3)] = bad_number(random);
+    break;
+  case 1:
+    def.velocity[random.below(3)] = bad_number(random);
+    break;
+  case 2:
+    def.kind = LOAM_FIELD_BLAST + 1 + random.below(3);
+    break;
+  case 3: // every kind has a number that is wrong
+    def.rate = def.softening = random.chance(0.5) ? 0.0f : bad_number(random);
+    if (def.kind == LOAM_FIELD_BLAST) def.radius = 0;
+    break;
+  case 4:
+    def.time = random.chance(0.5) ? -1.0f : bad_number(random);
+    break;
+  default:
+    def.radius = random.chance(0.5) ? -1.0f : bad_number(random);
+    break;
+  }
+}
+
+loam_killer_def random_killer(Random &random, float r) {
+  loam_killer_def def;
+  loam_killer_def_default(&def, sizeof def);
+  def.kind = random.below(LOAM_KILLER_AGE + 1);
+  random_place(random, r, def.position, def.rotation);
+  for (float &half : def.half_extents) half = r * random.log_between(0.5, 5);
+  def.radius = r * random.log_between(0.5, 5);
+  def.age = random.log_between(0.01, 1);
+  if (random.chance(0.1)) {
+    def.outside = 1;
+    def.radius *= 10;
+    for (float &half : def.half_extents) half *= 10;
+  }
+  return def;
+}
+
+void spoil(loam_killer_def &def, Random &random) {
+  switch (random.below(6)) {
+  case 0:
+    def.position[random.below(3)] = bad_number(random);
+    break;
+  case 1:
+    std::fill(def.rotation, def.rotation + 4, random.chance(0.5) ? 0.0f : bad_number(random));
+    break;
+  case 2:
+    def.kind = LOAM_KILLER_AGE + 1 + random.below(3);
+    break;
+  case 3: // every kind has a number that is wrong
+    def.half_extents[random.below(3)] = def.radius = def.age = random.chance(0.5) ? 0.0f : bad_number(random);
+    break;
+  case 4:
+    def.outside = 2 + random.below(9);
+    break;
+  default:
+    def.reserved = 1;
+    break;
+  }
+}
+
 } // namespace loam::fuzz

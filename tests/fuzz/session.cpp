@@ -72,6 +72,8 @@ void Session::destroy_world() {
   for (const Collider &collider : now_.colliders) stale_.push_back(collider.id);
   for (const Cloth &cloth : now_.cloths) stale_.push_back(cloth.id);
   for (const Emitter &emitter : now_.emitters) stale_.push_back(emitter.id);
+  for (const loam_field_id field : now_.fields) stale_.push_back(field);
+  for (const Killer &killer : now_.killers) stale_.push_back(killer.id);
   now_ = {};
   ++description_;
   kept_ = nullptr;
@@ -297,6 +299,8 @@ void Session::act(Random &random) {
                                        {2, &Session::blow},
                                        {2, &Session::bad_cloth},
                                        {6, &Session::change_emitters},
+                                       {4, &Session::change_fields},
+                                       {6, &Session::change_killers},
                                        {12, &Session::bad_number_or_choice},
                                        {6, &Session::bad_handle},
                                        {3, &Session::bad_pointer}};

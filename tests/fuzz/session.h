@@ -5,7 +5,7 @@
  *   - what must be refused is refused, what is in order is not
  *   - a failed call left the state's hash as it was (but for a step that ran out of room, which stands at its last whole substep)
  * and after every step:
- *   - everything is finite, volumes and masses are positive, masses and materials are what they were, particles come from nozzles only
+ *   - everything is finite, volumes and masses are positive, masses and materials are what they were, particles come from nozzles and go to killers only
  *   - speeds are within twice r / substep, above that of the colliders
  *
  * Each call draws from a stream of its own, so that a second run can leave out those that failed, and must end in the same state. */

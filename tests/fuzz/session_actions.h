@@ -49,6 +49,11 @@ struct Emitter {
   double speed; // at most, as it comes out
 };
 
+struct Killer {
+  loam_killer_id id;
+  std::uint64_t total;
+};
+
 /* Of each particle that ever was, by id. */
 struct Particle {
   bool here, streamed; // the latter came from a nozzle, which leads it for a while
@@ -66,6 +71,8 @@ struct Known {
   std::vector<Collider> colliders;
   std::vector<Cloth> cloths;
   std::vector<Emitter> emitters;
+  std::vector<loam_field_id> fields;
+  std::vector<Killer> killers;
 };
 
 /* A snapshot with what was known then. */
@@ -118,6 +125,8 @@ private:
   void blow(Random &random);
   void bad_cloth(Random &random);
   void change_emitters(Random &random);
+  void change_fields(Random &random);
+  void change_killers(Random &random);
   void bad_number_or_choice(Random &random);
   void bad_handle(Random &random);
   void bad_pointer(Random &random);

@@ -98,7 +98,7 @@ void Session::bad_number_or_choice(Random &random) {
 }
 
 void Session::bad_handle(Random &random) {
-  const std::uint32_t which = random.below(8);
+  const std::uint32_t which = random.below(10);
   std::uint64_t id = 0;
   if (!stale_.empty() && random.chance(0.6))
     id = stale_[random.below(stale_.size())];
@@ -124,6 +124,12 @@ void Session::bad_handle(Random &random) {
   }
   case 7:
     call("destroy no emitter", mapped_ ? Expect::failure : Expect::stale, [&] { return loam_emitter_destroy(world_, id); });
+    break;
+  case 8:
+    call("destroy no field", Expect::stale, [&] { return loam_field_destroy(world_, id); });
+    break;
+  case 9:
+    call("destroy no killer", mapped_ ? Expect::failure : Expect::stale, [&] { return loam_killer_destroy(world_, id); });
     break;
   case 3:
     call("destroy no material", Expect::stale, [&] { return loam_material_destroy(world_, id); });

@@ -150,6 +150,7 @@ struct StateHash {
     h = mix(h, bits(particles.log_volumes[i]));
     h = mix(h, bits(particles.rest_volumes[i]));
     if (particles.rests != nullptr) h = mix(h, bits(particles.rests[i]));
+    if (particles.ages != nullptr) h = mix(h, bits(particles.ages[i]));
     h = mix(h, particles.ids[i]);
     return mix(h, particles.materials[i]);
   }

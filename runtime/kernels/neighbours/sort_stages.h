@@ -21,6 +21,7 @@ struct ParticleArrays {
   std::uint32_t *materials;
   float *free_distances; // see kernels/contact/free_distance.h; no part of the state
   float *rests;          // see kernels/integration/sleep.h; null where nothing may sleep
+  float *ages = nullptr; // s; while something asks
 };
 
 LOAM_FN void move_particle(const ParticleArrays &from, long j, const ParticleArrays &to, long i) {
@@ -36,6 +37,7 @@ LOAM_FN void move_particle(const ParticleArrays &from, long j, const ParticleArr
   to.materials[i] = from.materials[j];
   if (to.free_distances != nullptr) to.free_distances[i] = from.free_distances[j];
   if (to.rests != nullptr) to.rests[i] = from.rests[j];
+  if (to.ages != nullptr) to.ages[i] = from.ages[j];
 }
 
 struct AssignCells {
