@@ -55,7 +55,7 @@ Scene prepare_scene(const Options &options) {
 
 int run(const Options &options) {
   const auto previous_handler = std::signal(SIGINT, on_interrupt); // before the scene is filled, which may take long
-  const Scene scene = prepare_scene(options);
+  Scene scene = prepare_scene(options);
   const std::uint32_t threads = options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   const tbb::global_control thread_limit(tbb::global_control::max_allowed_parallelism, threads);
 

@@ -47,12 +47,15 @@ struct SceneRegion {
   std::filesystem::path file; // MESH
 };
 
+// What fills a region at the start, or a stream.
 struct SceneEmitter {
   Place place;
   std::string material;
   SceneRegion region, cut;
-  loam_fill_def def{}; // without material, region and cut
-  Vector3 colour;      // the material's, unless the emitter has its own
+  loam_fill_def def{};                    // without material, region and cut
+  std::optional<loam_emitter_def> stream; // without material and mesh
+  std::filesystem::path nozzle;           // its mesh
+  Vector3 colour;                         // the material's, unless the emitter has its own
   // Grains change colour with their height at the start, every band_height, so that one sees where they went. 0: they do not.
   Vector3 band_colour;
   float band_height = 0;
@@ -60,6 +63,13 @@ struct SceneEmitter {
 
 // How a collider or decoration looks. It has no part in the simulation.
 enum class Appearance { hidden, glass, matte, wood, metal, glossy, tiles };
+
+// An axle through the collider's origin, on which what matter does to the collider turns it.
+struct SceneHinge {
+  Vector3 axis = {0, 0, 1}; // unit
+  double inertia = 0;       // about the axle, kg m^2
+  double damping = 0;       // of the bearing, N m s
+};
 
 struct SceneCollider {
   Place place;
@@ -71,7 +81,9 @@ struct SceneCollider {
   DistanceField field; // GRID
   Pose pose;           // at the start
   std::vector<Motion> motions;
-  float friction = 0;
+  std::optional<SceneHinge> hinge;
+  bool moves() const { return !motions.empty() || hinge.has_value(); }
+  float friction = 0, restitution = 0, stick = 0;
   Appearance appearance = Appearance::matte;
   Vector3 colour = {0.5f, 0.5f, 0.5f};
 };
@@ -128,6 +140,17 @@ struct SceneLight {
   float exposure = 1;
 };
 
+struct SceneField {
+  Place place;
+  loam_field_def def{};
+};
+
+struct SceneKiller {
+  Place place;
+  std::string material; // empty: all
+  loam_killer_def def{};
+};
+
 // Materials of which any two meet as bodies that stay apart.
 struct SceneContact {
   Place place;
@@ -138,7 +161,8 @@ struct SceneContact {
 struct Scene {
   std::filesystem::path path;
   std::string title;
-  loam_world_def world{}; // without hooks and particle_capacity, which the runner decides
+  loam_world_def world{};              // without hooks and particle_capacity
+  std::uint64_t particle_capacity = 0; // 0: as many as all emitters make
   Place world_place;
   double frame_rate = 60;
   std::uint64_t frames = 120;
@@ -147,6 +171,8 @@ struct Scene {
   std::vector<SceneEmitter> emitters;
   std::vector<SceneCollider> colliders;
   std::vector<SceneCloth> cloths;
+  std::vector<SceneField> fields;
+  std::vector<SceneKiller> killers;
   std::vector<SceneDecoration> decorations;
   std::optional<SceneWatch> watch;
   std::optional<SceneCamera> camera; // without one there are no pictures

@@ -11,6 +11,7 @@
 #include "cloth_reader.h"
 #include "collider_meshes.h"
 #include "distance_field.h"
+#include "effect_reader.h"
 #include "error.h"
 #include "material_reader.h"
 #include "obj_reader.h"
@@ -61,6 +62,8 @@ public:
     for (TomlTable &table : root.tables("emitters")) read_emitter(table);
     for (TomlTable &table : root.tables("colliders")) read_collider(table);
     for (TomlTable &table : root.tables("cloths")) read_cloth(table);
+    for (TomlTable &table : root.tables("fields")) scene_.fields.push_back(read_field(table));
+    for (TomlTable &table : root.tables("killers")) scene_.killers.push_back(read_killer(table, scene_.materials));
     for (TomlTable &table : root.tables("decorations")) read_decoration(table);
     read_watch(root);
     read_camera(root);
@@ -84,6 +87,7 @@ private:
     table->read("gravity", gravity);
     for (int axis = 0; axis < 3; ++axis) def.gravity[axis] = gravity[axis];
     table->read("kernel_radius", def.kernel_radius);
+    table->read("particle_capacity", scene_.particle_capacity);
     table->read("substeps", def.substeps);
     table->read("iterations", def.iterations);
     table->read("solver", def.solver, solvers);
@@ -157,6 +161,16 @@ private:
       table.fail(table.has("band_colour") ? "band_colour" : "band_height", "band_colour and band_height belong together");
     if (table.has("band_height") && material->look != Look::grains)
       table.fail("band_height", "bands are for materials whose look is \"grains\"");
+    if (table.has("nozzle")) {
+      if (table.has("region")) table.fail("region", "an emitter has a region to fill or a nozzle to stream from, not both");
+      std::string file;
+      emitter.stream = read_stream(table, file);
+      if (!file.empty()) emitter.nozzle = find_mesh(table, file);
+      if (table.has("band_height")) table.fail("band_height", "bands are for matter that fills a region");
+      table.finish();
+      scene_.emitters.push_back(emitter);
+      return;
+    }
     table.require("region");
     emitter.region = read_region(*table.table("region"));
     if (std::optional<TomlTable> cut = table.table("cut")) emitter.cut = read_region(*cut);
@@ -212,10 +226,14 @@ private:
     collider.pose.rotation = read_rotation(table);
     for (TomlTable &motion : table.tables("motions")) collider.motions.push_back(read_motion(motion));
     table.read("friction", collider.friction);
-    if (collider.kind == LOAM_COLLIDER_PLANE && !collider.motions.empty())
-      table.fail("motions", "a plane stays where it is");
+    table.read("restitution", collider.restitution);
+    table.read("stick", collider.stick);
+    if (std::optional<TomlTable> hinge = table.table("hinge")) collider.hinge = read_hinge(*hinge);
+    if (collider.hinge && !collider.motions.empty()) table.fail("hinge", "what has motions does not turn by itself");
+    if (collider.kind == LOAM_COLLIDER_PLANE && collider.moves())
+      table.fail(collider.hinge ? "hinge" : "motions", "a plane stays where it is");
     table.read("appearance", collider.appearance, collider.kind == LOAM_COLLIDER_PLANE ? plane_appearances : appearances);
-    if (collider.appearance == Appearance::glass && !collider.motions.empty())
+    if (collider.appearance == Appearance::glass && collider.moves())
       table.fail("appearance", "what moves cannot be shown as glass");
     table.read("colour", collider.colour);
     table.finish();
@@ -381,21 +399,14 @@ private:
     table->finish();
   }
 
-  std::array<float, 4> read_rotation(TomlTable &table) {
-    Vector3 axis = {0, 1, 0};
-    double degrees = 0;
-    table.read("rotation_axis", axis);
-    table.read("rotation_degrees", degrees);
-    if (!(length(axis) > 0)) table.fail("rotation_axis", "must not be zero");
-    const double half = degrees * std::numbers::pi / 360;
-    const Vector3 part = static_cast<float>(std::sin(half)) * normalized(axis);
-    return {part.x, part.y, part.z, static_cast<float>(std::cos(half))};
-  }
-
   std::filesystem::path read_mesh(TomlTable &table) {
     table.require("file");
     std::string name;
     table.read("file", name);
+    return find_mesh(table, name);
+  }
+
+  std::filesystem::path find_mesh(TomlTable &table, const std::string &name) {
     const std::filesystem::path file = scene_.path.parent_path() / name;
     if (scene_.meshes.contains(file)) return file;
     try {
@@ -443,6 +454,7 @@ void scale_particle_count(Scene &scene, double factor) {
   for (SceneEmitter &emitter : scene.emitters) {
     emitter.def.spacing = static_cast<float>(emitter.def.spacing / finer);
     emitter.def.inset = static_cast<float>(emitter.def.inset / finer);
+    if (emitter.stream) emitter.stream->spacing = static_cast<float>(emitter.stream->spacing / finer);
   }
 }
 

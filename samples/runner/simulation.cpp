@@ -60,7 +60,7 @@ template <class T> std::vector<T> copy_to_host(const T *from, std::size_t count,
 
 } // namespace
 
-Simulation::Simulation(const Scene &scene) : scene_(&scene) {
+Simulation::Simulation(Scene &scene) : scene_(&scene) {
   // How many particles a region holds is known only when it has been filled; a world too small says so, and a world too large is
   // made again to measure.
   std::uint64_t capacity = 65536;
@@ -69,10 +69,16 @@ Simulation::Simulation(const Scene &scene) : scene_(&scene) {
       throw Error(fmt::format("{}: more particles than a world can hold", scene.path.string()));
     capacity *= 4;
   }
-  if (particle_count_ == 0 && !scene.emitters.empty())
-    throw Error(fmt::format("{}: the emitters made no particles", scene.path.string()));
-  if (!build(std::max<std::uint64_t>(particle_count_, 1)))
+  if (particle_count_ + stream_count_ == 0 && !scene.emitters.empty())
+    throw Error(fmt::format("{}: the emitters make no particles", scene.path.string()));
+  const std::uint64_t needed = std::max<std::uint64_t>(1, particle_count_ + stream_count_);
+  if (!build(scene.particle_capacity != 0 ? scene.particle_capacity : needed)) {
+    if (scene.particle_capacity != 0)
+      throw Error(fmt::format("{}:{}: world.particle_capacity: is {}; the emitters make {} particles at the start",
+                              scene.path.string(), scene.world_place.line, scene.particle_capacity, particle_count_));
     throw Error(fmt::format("{}: the emitters do not repeat themselves", scene.path.string()));
+  }
+  spins_.assign(scene.colliders.size(), 0);
 }
 
 void Simulation::check(loam_status status, const Place &place) const {
@@ -89,7 +95,7 @@ bool Simulation::build(std::uint64_t particle_capacity) {
   collider_ids_.clear();
   cloth_ids_.clear();
   emitter_ends_.clear();
-  particle_count_ = 0;
+  particle_count_ = stream_count_ = 0;
 
   loam_world_def world_def = scene_->world;
   world_def.particle_capacity = particle_capacity;
@@ -124,6 +130,9 @@ bool Simulation::build(std::uint64_t particle_capacity) {
     for (int axis = 0; axis < 3; ++axis) def.position[axis] = collider.pose.position[axis];
     std::copy(collider.pose.rotation.begin(), collider.pose.rotation.end(), def.rotation);
     def.friction = collider.friction;
+    def.restitution = collider.restitution;
+    def.stick = collider.stick;
+    def.reaction = collider.hinge ? 1 : 0;
     if (collider.kind == LOAM_COLLIDER_MESH || collider.kind == LOAM_COLLIDER_HULL)
       def.mesh = describe(scene_->meshes.at(collider.file));
     def.radius = collider.radius;
@@ -136,6 +145,10 @@ bool Simulation::build(std::uint64_t particle_capacity) {
   }
 
   for (const SceneEmitter &emitter : scene_->emitters) {
+    if (emitter.stream) {
+      emitter_ends_.push_back(particle_count_);
+      continue;
+    }
     loam_fill_def def = emitter.def;
     def.material = id_of(emitter.material);
     def.region = describe(emitter.region, *scene_);
@@ -148,6 +161,38 @@ bool Simulation::build(std::uint64_t particle_capacity) {
     emitter_ends_.push_back(particle_count_);
   }
   make_cloths();
+  for (const SceneEmitter &emitter : scene_->emitters) {
+    if (!emitter.stream) continue;
+    loam_emitter_def def = *emitter.stream;
+    def.material = id_of(emitter.material);
+    if (def.nozzle == LOAM_NOZZLE_MESH) def.mesh = describe(scene_->meshes.at(emitter.nozzle));
+    loam_emitter_id id = 0;
+    const loam_status status = loam_emitter_create(world, &def, &id);
+    if (status == LOAM_ERROR_CAPACITY && scene_->particle_capacity == 0) return false;
+    check(status, emitter.place);
+    loam_emitter_report report{};
+    report.struct_size = sizeof report;
+    check(loam_emitter_get_report(world, id, &report), emitter.place);
+    const double end = static_cast<double>(scene_->frames) / scene_->frame_rate;
+    const double seconds = (def.stop > 0 ? std::min<double>(def.stop, end) : end) - static_cast<double>(def.start);
+    // And a layer, for roundings.
+    const double layer = report.volume_flow / report.volume *
+                         static_cast<double>(def.spacing > 0 ? def.spacing : scene_->world.kernel_radius) /
+                         static_cast<double>(def.speed);
+    if (seconds > 0)
+      stream_count_ +=
+          static_cast<std::uint64_t>(std::min(1e9, std::ceil(seconds * report.volume_flow / report.volume + layer + 1)));
+  }
+  for (const SceneField &field : scene_->fields) {
+    loam_field_id id = 0;
+    check(loam_field_create(world, &field.def, &id), field.place);
+  }
+  for (const SceneKiller &killer : scene_->killers) {
+    loam_killer_def def = killer.def;
+    if (!killer.material.empty()) def.material = id_of(killer.material);
+    loam_killer_id id = 0;
+    check(loam_killer_create(world, &def, &id), killer.place);
+  }
   return true;
 }
 
@@ -183,8 +228,36 @@ void Simulation::release_attachments(double end) {
     }
 }
 
+// Of matter that streams, the first stream of its material.
+std::uint32_t Simulation::emitter_of(std::uint32_t id, std::uint32_t material) const {
+  const auto filled = std::upper_bound(emitter_ends_.begin(), emitter_ends_.end(), std::uint64_t(id));
+  if (filled != emitter_ends_.end()) return static_cast<std::uint32_t>(filled - emitter_ends_.begin());
+  const auto stream = std::find_if(scene_->emitters.begin(), scene_->emitters.end(), [&](const SceneEmitter &emitter) {
+    return emitter.stream && emitter.material == scene_->materials[material].name;
+  });
+  return static_cast<std::uint32_t>(stream - scene_->emitters.begin());
+}
+
+// By what matter did to them in the last step. A hinge's collider turns at that speed for the next one.
+void Simulation::turn_hinges(double seconds) {
+  for (std::size_t i = 0; i < scene_->colliders.size(); ++i) {
+    SceneCollider &collider = scene_->colliders[i];
+    if (!collider.hinge) continue;
+    const SceneHinge &hinge = *collider.hinge;
+    loam_collider_reaction reaction{};
+    reaction.struct_size = sizeof reaction;
+    check(loam_collider_get_reaction(world_.get(), collider_ids_[i], &reaction), collider.place);
+    const double moment =
+        reaction.torque[0] * hinge.axis.x + reaction.torque[1] * hinge.axis.y + reaction.torque[2] * hinge.axis.z;
+    spins_[i] = (spins_[i] + moment / hinge.inertia) / (1 + hinge.damping * seconds / hinge.inertia);
+    const double start = static_cast<double>(frame_) * seconds;
+    collider.motions.push_back({start, start + seconds, {}, hinge.axis, spins_[i]});
+  }
+}
+
 void Simulation::step() {
   const double end = static_cast<double>(frame_ + 1) / scene_->frame_rate;
+  turn_hinges(1 / scene_->frame_rate);
   for (std::size_t i = 0; i < scene_->colliders.size(); ++i) {
     const SceneCollider &collider = scene_->colliders[i];
     if (collider.motions.empty()) continue;
@@ -225,8 +298,7 @@ Particles Simulation::read_particles() const {
     result.velocities.push_back({velocities[4 * i], velocities[4 * i + 1], velocities[4 * i + 2]});
     const auto material = std::find(material_ids_.begin(), material_ids_.end(), materials[i]);
     result.materials.push_back(static_cast<std::uint32_t>(material - material_ids_.begin()));
-    const auto emitter = std::upper_bound(emitter_ends_.begin(), emitter_ends_.end(), std::uint64_t(ids[i]));
-    result.emitters.push_back(static_cast<std::uint32_t>(emitter - emitter_ends_.begin()));
+    result.emitters.push_back(emitter_of(ids[i], result.materials.back()));
   }
   return result;
 }

@@ -17,7 +17,8 @@ namespace runner {
 class Simulation {
 public:
   // Throws Error with the library's own text and the place in the scene file that it is about.
-  explicit Simulation(const Scene &scene);
+  // Colliders on hinges get motions as they turn.
+  explicit Simulation(Scene &scene);
 
   // One frame of 1 / frame_rate seconds.
   void step();
@@ -45,12 +46,17 @@ private:
   void release_attachments(double end);
   void check(loam_status status, const Place &place) const;
 
-  const Scene *scene_;
+  std::uint32_t emitter_of(std::uint32_t id, std::uint32_t material) const;
+  void turn_hinges(double seconds);
+
+  Scene *scene_;
   std::unique_ptr<loam_world, Destroy> world_;
   std::vector<std::uint32_t> material_ids_; // the lower 32 bits, by index in the scene
   std::vector<loam_collider_id> collider_ids_;
   std::vector<loam_cloth_id> cloth_ids_;
-  std::vector<std::uint64_t> emitter_ends_; // of each emitter the id after its last particle's
+  std::vector<std::uint64_t> emitter_ends_; // of each emitter the id after its last particle's; streams have none
+  std::vector<double> spins_;               // of the colliders' hinges, radians a second
+  std::uint64_t stream_count_ = 0;          // particles that all streams make
   std::uint64_t frame_ = 0;
   std::uint64_t particle_count_ = 0;
 };

@@ -114,6 +114,14 @@ void TomlTable::read(std::string_view key, int &value) {
     value = static_cast<int>(integer(*node, key, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()));
 }
 
+void TomlTable::read(std::string_view key, bool &value) {
+  const toml::node *node = find(key);
+  if (node == nullptr) return;
+  const auto *boolean = node->as_boolean();
+  if (boolean == nullptr) fail(key, fmt::format("expected true or false, found a value of type {}", type_name(*node)));
+  value = boolean->get();
+}
+
 void TomlTable::read(std::string_view key, std::string &value) {
   if (const toml::node *node = find(key)) value = text(*node, key);
 }

@@ -28,6 +28,7 @@ public:
   void read(std::string_view key, std::uint32_t &value);
   void read(std::string_view key, std::uint64_t &value);
   void read(std::string_view key, int &value);
+  void read(std::string_view key, bool &value);
   void read(std::string_view key, std::string &value);
   void read(std::string_view key, Vector3 &value);
   void read(std::string_view key, std::vector<std::string> &value);

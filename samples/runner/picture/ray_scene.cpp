@@ -110,7 +110,7 @@ RayScene::RayScene(const Scene &scene) {
     const bool glass = collider.appearance == Appearance::glass;
     const std::uint32_t id = glass ? panes_++ : static_cast<std::uint32_t>(solids_.size());
     if (!glass) solids_.push_back({collider.appearance, collider.colour, collider.pose.position, lift_off(mesh)});
-    if (!glass && !collider.motions.empty())
+    if (!glass && collider.moves())
       moving_.push_back({id, &collider, &mesh});
     else
       add_mesh(glass ? glass_ : opaque_, id, mesh, collider.pose, true);

@@ -116,7 +116,7 @@ void Renderer::place_particles(const Particles &particles, double time) {
     spheres.insert(spheres.end(), {x.x, x.y, x.z, radii_.back()});
     const float variation = scene_->materials[particles.materials[i]].colour_variation;
     const SceneEmitter &from = scene_->emitters[emitter];
-    colours_.push_back(grain_colour(in_band_[id] ? from.band_colour : from.colour, variation, id));
+    colours_.push_back(grain_colour(id < in_band_.size() && in_band_[id] ? from.band_colour : from.colour, variation, id));
   }
   for (std::size_t i = 0; i < surfaces_.size(); ++i)
     if (surfaces_[i] != none) rays_.set_surface(surfaces_[i], make_surface(bodies[i], scene_->world.kernel_radius));
