@@ -14,6 +14,7 @@ gallery=(
   "colliding_blocks 15 660 .1 0 .05 .08"
   "notched_block 20 620 .15 .25 .15 .12"
   "friction_row 60 900 0 .15 0 .1"
+  "wrist 80 640 .1 .1 .1 .05"
 )
 
 threads=0

@@ -94,7 +94,8 @@ void Session::wake(Random &) {
 // -------------------------------------------------------------------------------------------------------- kept frames ---
 
 void Session::keep(Random &random) {
-  if (kept_ != nullptr && std::memcmp(kept_, kept_positions_.data(), kept_positions_.size() * sizeof(float)) != 0)
+  if (kept_ != nullptr && !std::equal(kept_positions_.begin(), kept_positions_.end(), kept_,
+                                      [](float a, float b) { return std::memcmp(&a, &b, sizeof a) == 0; }))
     find("a kept frame has changed");
   if (random.chance(0.3)) {
     if (call("drop", kept_ != nullptr ? Expect::success : Expect::invalid, [&] { return loam_particles_drop(world_); }))
