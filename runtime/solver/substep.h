@@ -113,7 +113,7 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
     cloth_.advance(cloth_substep(input));
     lap(schedule_.finish_cloth, cloth_.vertex_count());
   }
-  if (schedule_.sleep >= 0) fall_asleep();
+  if (schedule_.sleep >= 0 && count_ > 0) fall_asleep();
 }
 
 template <class Executor> typename Solver<Executor>::ClothSubstep Solver<Executor>::cloth_substep(const StepInput &input) {
