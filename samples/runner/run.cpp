@@ -111,6 +111,7 @@ int run(const Options &options) {
   }
   std::signal(SIGINT, previous_handler);
 
+  if (!statistics.frames.empty()) statistics.particles = statistics.frames.back().statistics.particles;
   statistics.interrupted = interrupted != 0;
   statistics.memory = simulation.memory();
   statistics.state_hash = simulation.state_hash();
