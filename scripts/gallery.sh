@@ -15,6 +15,9 @@ gallery=(
   "notched_block 20 620 .15 .25 .15 .12"
   "friction_row 60 900 0 .15 0 .1"
   "wrist 80 640 .1 .1 .1 .05"
+  "pouring_sauce 75 560 .05 .05 .05 0"
+  "water_wheel 100 600 0 0 .15 0"
+  "poured_cup 200 640 .25 .1 .05 .1"
 )
 
 threads=0
