@@ -11,7 +11,7 @@ namespace {
 
 using snapshots::Bytes;
 
-/* Sand and snow on a plane, a sheet that hangs from it, and a stream. */
+/* Sand and snow on a plane, a sheet that hangs from it, a stream, a blast that is still to come, and a killer of old particles. */
 class DamagedSnapshot : public testing::Test {
 protected:
   DamagedSnapshot() : world_(definition()) {
@@ -31,6 +31,19 @@ protected:
     emitter.when_full = LOAM_FULL_DROP;
     loam_emitter_id nozzle = 0;
     scenes::require(loam_emitter_create(world_.get(), &emitter, &nozzle), "emitter");
+    loam_field_def blast;
+    scenes::require(loam_field_def_default(&blast, sizeof blast), "default");
+    blast.kind = LOAM_FIELD_BLAST;
+    blast.speed = blast.radius = 1;
+    blast.time = 0.002f;
+    loam_field_id field = 0;
+    scenes::require(loam_field_create(world_.get(), &blast, &field), "field");
+    loam_killer_def age;
+    scenes::require(loam_killer_def_default(&age, sizeof age), "default");
+    age.kind = LOAM_KILLER_AGE;
+    age.age = 0.01f;
+    loam_killer_id killer = 0;
+    scenes::require(loam_killer_create(world_.get(), &age, &killer), "killer");
     world_.step(1e-3f);
     saved_ = snapshots::save(world_.get());
     hash_ = world_.state_hash();
