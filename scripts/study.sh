@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Experiments that take too long for the tests. Builds what is missing, shows how far it is, and ends with 0 if what was measured is in its bounds.
 #   study.sh rest [--solver gauss_seidel|jacobi] [--seconds S] [--settling S] [--threads N]    a heap of sand for ten minutes: creep, energy
+#   study.sh bag [--seconds S] [--height H] [--kernel-radius R] [--threads N]    a bag of cloth full of sand that falls: does it leak?
 # shellcheck source=scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 what=${1:-}
 case $what in
-  rest) ;;
-  *) die "unknown study '$what'; there is: rest" ;;
+  rest | bag) ;;
+  *) die "unknown study '$what'; there are: rest, bag" ;;
 esac
 shift
 

@@ -6,10 +6,11 @@
  *
  * Vertices keep `thickness` from colliders, with the collider's friction, and are swept against them, so that no vertex passes a surface. What lies between
  * vertices is not looked at: over a convex collider of radius R, edges of length L cut in by up to L^2 / (8 R), less the thickness.
- * Particles keep half a kernel radius from the triangles, and push and rub against them both ways (what a substep cannot resolve is taken from the particle
- * alone); edges should be no longer than half of one. Not all of a heap that hits a cloth hard is held: of balls of sand 16 cm wide that were dropped from up to
- * 30 cm into a hanging cloth of 0.2 kg/m^2, about 2 grains in 100 got through. Cloth collides with itself and with other cloth where its definition says so
- * (self_distance). In a world with cloth nothing sleeps.
+ * Particles keep half a kernel radius from the triangles, and push and rub against them both ways; edges should be no longer than half of one. At the end of a substep each
+ * particle's way is swept against the moving triangles. What a substep could not resolve is then taken from the particle: cloth that nothing holds (no attachment, no collider near) has its
+ * share of that, so that both keep their momentum; with cloth that is held the particle alone stops. A fold that turns through itself around a grain lets it go: where matter is thrown
+ * about in a bag, give the cloth a self_distance, with which folds stay open. Cloth collides with itself and with other cloth where its definition says so (self_distance).
+ * In a world with cloth nothing sleeps.
  *
  * Thread contract: as for the world; during an asynchronous step every function here that takes a world answers LOAM_ERROR_BUSY.
  */
@@ -62,6 +63,15 @@ typedef struct loam_cloth_def {
    * substep may pass. */
   float self_distance;
   float self_friction; /* Coulomb coefficient of cloth on cloth, 0 to 100; of two cloths the mean counts; default 0.3 */
+
+  /* The strain, of a triangle in any direction, above which the cloth tears: a vertex there is split, and a copy in the same place goes to the triangles on one side of the tear. So
+   * there are more vertices, behind those there were, and other indices, see loam_cloth_view; what held a vertex holds the larger part. Tears go on from their ends by a
+   * vertex a substep, and begin at the most strained triangle. What counts is the strain of the load that the triangle bears, and no more than the strain that shows; so cloth that
+   * hangs too long because iterations are few does not tear for that, but it swings and tears early (a strip at 20 iterations, 8 substeps and a damping of 0.02 s at 0.046 instead of
+   * 0.1). 1e-4 to 100; 0 (the default): never. Threads (greatest_stretch) are stiffer than the membrane: a load that stretches by more than greatest_stretch needs ten
+   * times the force for every further strain. Cloth that may tear takes memory for all the vertices that it could fall into. */
+  float tear_strain;
+  uint32_t reserved_2; /* 0 */
 } loam_cloth_def;
 
 /* Errors: INVALID_ARGUMENT for null or an unknown size. */
@@ -114,7 +124,7 @@ LOAM_API loam_status loam_cloth_set_wind(loam_world *world, loam_cloth_id cloth,
 
 /* -------------------------------------------------------------------------------------------------- buffers --- */
 
-/* The solver's own buffers, not copies: read-only, in the order of the mesh's vertices. */
+/* The solver's own buffers, not copies: read-only, in the order of the mesh's vertices; those that tears have made come behind. */
 typedef struct loam_cloth_view {
   uint32_t struct_size; /* set by the caller to sizeof(loam_cloth_view) */
   uint32_t memory;      /* LOAM_MEMORY_*: which processor the pointers are good for */
@@ -124,6 +134,9 @@ typedef struct loam_cloth_view {
   const float *velocities; /* stride of 4 floats: x, y, z, and the inverse mass in 1/kg (0: rigidly attached) */
   const float
       *normals; /* stride of 4 floats: the mean of the triangles around, of length 1 (0 where there is none), and 0 */
+  const uint32_t *indices; /* three vertices a triangle, as in the mesh until the cloth tears */
+  uint32_t triangle_count; /* that of the mesh, always */
+  uint32_t reserved_2;
 } loam_cloth_view;
 
 /* Gives the pointers. They are valid until loam_cloth_unmap or loam_world_destroy; in between, calls that would change the cloth fail with IN_USE. Costs no copy, except

@@ -234,6 +234,8 @@ typedef struct loam_statistics {
   uint64_t capacity_needed;
 
   uint64_t particles_killed; /* by killers, at the end of the step */
+
+  uint64_t cloth_tears; /* vertices of cloth that tore apart in the step, see loam_cloth_def.tear_strain */
 } loam_statistics;
 
 /* Errors: INVALID_ARGUMENT for null or an unknown struct_size. */

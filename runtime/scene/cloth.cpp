@@ -43,12 +43,14 @@ Vector unit(const Vector &v) { return (1 / length(v)) * v; }
 double cotangent(const Vector &a, const Vector &b) { return dot(a, b) / length(cross(a, b)); }
 
 // Puts constraints in the order of their colours.
-ClothConstraintList sorted(const std::vector<int> &indices, const std::vector<float> &fields, int size, int vertex_count) {
+// `order` receives which is where.
+ClothConstraintList sorted(const std::vector<int> &indices, const std::vector<float> &fields, int size, int vertex_count,
+                           std::vector<int> &order) {
   const std::size_t vertices = static_cast<std::size_t>(size);
   const std::size_t count = indices.size() / vertices, width = count > 0 ? fields.size() / count : 0;
   std::vector<int> starts(count + 1);
   for (std::size_t i = 0; i <= count; ++i) starts[i] = static_cast<int>(i) * size;
-  const Colours colours = colour_constraints(indices, starts, vertex_count);
+  Colours colours = colour_constraints(indices, starts, vertex_count);
   ClothConstraintList list;
   list.starts = colours.starts;
   list.indices.reserve(indices.size());
@@ -59,10 +61,11 @@ ClothConstraintList sorted(const std::vector<int> &indices, const std::vector<fl
                         indices.data() + (constraint + 1) * vertices);
     list.fields.insert(list.fields.end(), fields.data() + constraint * width, fields.data() + (constraint + 1) * width);
   }
+  order.swap(colours.order);
   return list;
 }
 
-ClothConstraintList make_membrane(const ClothMesh &mesh, const Vector &warp) {
+ClothConstraintList make_membrane(const ClothMesh &mesh, const Vector &warp, std::vector<int> &order) {
   std::vector<float> fields;
   for (std::size_t t = 0; t < mesh.areas.size(); ++t) {
     const int *v = mesh.triangles.data() + 3 * t;
@@ -77,10 +80,10 @@ ClothConstraintList make_membrane(const ClothMesh &mesh, const Vector &warp) {
     fields.push_back(static_cast<float>(dot(e1, along) / determinant));
     fields.push_back(mesh.areas[t]);
   }
-  return sorted(mesh.triangles, fields, 3, static_cast<int>(mesh.vertices.size()));
+  return sorted(mesh.triangles, fields, 3, static_cast<int>(mesh.vertices.size()), order);
 }
 
-ClothConstraintList make_hinges(const ClothMesh &mesh) {
+ClothConstraintList make_hinges(const ClothMesh &mesh, std::vector<int> &order) {
   std::vector<int> indices;
   std::vector<float> fields;
   for (const ClothHinge &hinge : mesh.hinges) {
@@ -103,11 +106,12 @@ ClothConstraintList make_hinges(const ClothMesh &mesh) {
     const double rest = size > 1e-6 * scale ? dot(sum, normal) / size : 0;
     fields.push_back(std::fabs(rest) > 1e-5 * length(edge) ? static_cast<float>(rest) : 0.0f);
   }
-  return sorted(indices, fields, 4, static_cast<int>(mesh.vertices.size()));
+  return sorted(indices, fields, 4, static_cast<int>(mesh.vertices.size()), order);
 }
 
 void check_definition(const loam_cloth_def &def) {
   check_reserved("reserved", def.reserved);
+  check_reserved("reserved_2", def.reserved_2);
   check_vector("velocity", def.velocity, 1e6);
   check_range("areal_density", double(def.areal_density), double(1e-4f), 1e4);
   check_above("stretch_stiffness", double(def.stretch_stiffness), 0, 1e9);
@@ -121,6 +125,7 @@ void check_definition(const loam_cloth_def &def) {
   check_range("greatest_stretch", double(def.greatest_stretch), 0, 10);
   if (def.self_distance != 0.0f) check_range("self_distance", double(def.self_distance), double(1e-6f), 1e3);
   check_range("self_friction", double(def.self_friction), 0, 100);
+  if (def.tear_strain != 0.0f) check_range("tear_strain", double(def.tear_strain), double(1e-4f), 100);
   if (def.thickness != 0.0f) check_range("thickness", double(def.thickness), double(1e-6f), 1e3);
 }
 
@@ -132,7 +137,8 @@ SolverCloth make_cloth(const loam_cloth_def &def, const ClothMesh &mesh, float t
   SolverCloth cloth;
   cloth.material = {def.stretch_stiffness, def.shear_stiffness, def.bending_stiffness,
                     def.damping,           def.areal_density,   def.thickness != 0.0f ? def.thickness : thickness,
-                    def.particle_friction, def.self_distance,   def.self_friction};
+                    def.particle_friction, def.self_distance,   def.self_friction,
+                    def.tear_strain};
   std::vector<double> masses(mesh.vertices.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     masses[static_cast<std::size_t>(mesh.triangles[i])] += double(def.areal_density) * double(mesh.areas[i / 3]) / 3;
@@ -144,10 +150,26 @@ SolverCloth make_cloth(const loam_cloth_def &def, const ClothMesh &mesh, float t
   }
   cloth.triangles = mesh.triangles;
   const Vector warp = {double(def.warp[0]), double(def.warp[1]), double(def.warp[2])};
-  cloth.membrane = make_membrane(mesh, warp);
-  if (def.bending_stiffness > 0) cloth.hinges = make_hinges(mesh);
+  std::vector<int> membrane_order, hinge_order;
+  cloth.membrane = make_membrane(mesh, warp, membrane_order);
+  if (def.bending_stiffness > 0) cloth.hinges = make_hinges(mesh, hinge_order);
   if (def.greatest_stretch > 0)
     cloth.threads = make_threads(mesh, warp, double(def.greatest_stretch), double(def.stretch_stiffness));
+  if (def.tear_strain > 0) {
+    SolverCloth::Parts &parts = cloth.parts;
+    parts.areas = mesh.areas;
+    parts.link_triangles = cloth.threads.link_triangles;
+    for (const int i : hinge_order) {
+      const ClothHinge &hinge = mesh.hinges[static_cast<std::size_t>(i)];
+      parts.hinge_triangles.insert(parts.hinge_triangles.end(), hinge.triangle, hinge.triangle + 2);
+    }
+    parts.shapes.resize(mesh.areas.size());
+    for (std::size_t i = 0; i < membrane_order.size(); ++i) {
+      const float *shape = cloth.membrane.fields.data() + 5 * i;
+      parts.shapes[static_cast<std::size_t>(membrane_order[i])] = {shape[0], shape[1], shape[2], shape[3]};
+    }
+    parts.membrane_triangles.swap(membrane_order);
+  }
   return cloth;
 }
 
@@ -171,7 +193,7 @@ loam_cloth_id ClothScene::create(ClothBackend &backend, const loam_cloth_def &de
   Cloth cloth;
   cloth.mesh = std::make_shared<ClothMesh>(make_cloth_mesh(def.mesh));
   const SolverCloth made = make_cloth(def, *cloth.mesh, default_thickness_);
-  cloth.description = {def, mesh_fingerprint(def.mesh), def.mesh.vertex_count};
+  cloth.description = {def, mesh_fingerprint(def.mesh), def.mesh.vertex_count, def.mesh.triangle_count};
   cloth.description.def.mesh = {};
   cloth.backend = backend.add(made);
   try {
@@ -205,7 +227,7 @@ void ClothScene::attach(ClothBackend &backend, loam_cloth_id id, const loam_clot
                         const Pose &pose) {
   Cloth &cloth = changeable(id);
   check_reserved("reserved", def.reserved);
-  const auto vertex_count = static_cast<std::uint32_t>(cloth.mesh->vertices.size());
+  const std::uint32_t vertex_count = backend.vertex_count(cloth.backend);
   check_range("count", def.count, 1, vertex_count);
   check_pointer(def.vertices, "vertices");
   if (def.compliance != 0.0f) check_range("compliance", double(def.compliance), double(1e-9f), 1e9);
@@ -245,7 +267,7 @@ void ClothScene::attach(ClothBackend &backend, loam_cloth_id id, const loam_clot
 
 void ClothScene::release(ClothBackend &backend, loam_cloth_id id, const std::uint32_t *vertices, std::uint32_t count) {
   Cloth &cloth = changeable(id);
-  check_range("count", count, 1, static_cast<double>(cloth.mesh->vertices.size()));
+  check_range("count", count, 1, static_cast<double>(backend.vertex_count(cloth.backend)));
   check_pointer(vertices, "vertices");
   std::vector<SolverAttachment> attachments = cloth.changes.attachments;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -317,7 +339,16 @@ const ClothScene::Description *ClothScene::description(std::size_t slot) const {
   return cloth != nullptr ? &cloth->description : nullptr;
 }
 
-ClothScene::Changes ClothScene::changes(std::size_t slot) const { return cloths_.at_index(slot)->changes; }
+ClothScene::Changes ClothScene::changes(const ClothBackend &backend, std::size_t slot) const {
+  const Cloth &cloth = *cloths_.at_index(slot);
+  Changes changes = cloth.changes;
+  changes.torn = backend.torn_corners(cloth.backend);
+  return changes;
+}
+
+bool ClothScene::could_be_torn(const ClothBackend &backend, std::size_t slot, const std::vector<TornCorner> &torn) const {
+  return backend.could_be_torn(cloths_.at_index(slot)->backend, torn);
+}
 
 void ClothScene::set_changes(ClothBackend &backend, const std::vector<Changes> &changes) {
   std::vector<Changes> before(cloths_.size());
@@ -325,8 +356,10 @@ void ClothScene::set_changes(ClothBackend &backend, const std::vector<Changes> &
   const auto set = [&](std::size_t slot, const Changes &now) {
     Cloth *cloth = cloths_.at_index(slot);
     if (cloth == nullptr) return;
-    before[slot] = cloth->changes;
+    before[slot] = this->changes(backend, slot);
     cloth->changes = now;
+    cloth->changes.torn.clear(); // the backend has them
+    backend.set_torn_corners(cloth->backend, now.torn);
     send(backend, *cloth);
     backend.set_wind(cloth->backend, now.wind);
   };
@@ -339,10 +372,11 @@ void ClothScene::set_changes(ClothBackend &backend, const std::vector<Changes> &
   }
 }
 
-void ClothScene::list_state(ClothBackend &backend, std::vector<StateSection> &list) const {
+void ClothScene::list_state(ClothBackend &backend, const std::vector<Changes> &changes,
+                            std::vector<StateSection> &list) const {
   for (std::size_t slot = 0; slot < cloths_.size(); ++slot)
     if (const Cloth *cloth = cloths_.at_index(slot); cloth != nullptr)
-      backend.list_state(cloth->backend, static_cast<std::uint32_t>(slot), list);
+      backend.list_state(cloth->backend, changes[slot].torn, static_cast<std::uint32_t>(slot), list);
 }
 
 } // namespace loam

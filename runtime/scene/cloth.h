@@ -44,19 +44,22 @@ public:
   struct Changes {
     std::vector<SolverAttachment> attachments; // with colliders by their slots
     ClothWind wind{};
+    std::vector<TornCorner> torn;
   };
   std::size_t slot_count() const { return cloths_.size(); }
   struct Description {
     loam_cloth_def def; // without the mesh
     std::uint64_t mesh; // its fingerprint
-    std::uint32_t vertex_count;
+    std::uint32_t vertex_count, triangle_count;
   };
   // Null if there is none in the slot.
   const Description *description(std::size_t slot) const;
-  Changes changes(std::size_t slot) const;
+  Changes changes(const ClothBackend &backend, std::size_t slot) const;
+  bool could_be_torn(const ClothBackend &backend, std::size_t slot, const std::vector<TornCorner> &torn) const;
   // All or none of them, by slot.
   void set_changes(ClothBackend &backend, const std::vector<Changes> &changes);
-  void list_state(ClothBackend &backend, std::vector<StateSection> &list) const;
+  // Of cloths that are torn as these say.
+  void list_state(ClothBackend &backend, const std::vector<Changes> &changes, std::vector<StateSection> &list) const;
 
   bool any() const { return count_ > 0; }
   bool any_mapped() const { return mapped_ > 0; }

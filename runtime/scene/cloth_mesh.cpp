@@ -109,7 +109,7 @@ void find_edges(ClothMesh &mesh) {
       throw Error(LOAM_ERROR_INVALID_MESH, format("mesh triangles %d and %d disagree on the orientation of edge %d-%d",
                                                   first.triangle, second.triangle, first.low, first.high));
     const int from = first.reversed ? first.high : first.low, to = first.reversed ? first.low : first.high;
-    mesh.hinges.push_back({{from, to, opposite(first), opposite(second)}});
+    mesh.hinges.push_back({{from, to, opposite(first), opposite(second)}, {first.triangle, second.triangle}});
   }
 }
 

@@ -13,6 +13,7 @@ namespace loam {
 // Two triangles that share the edge from vertex 0 to vertex 1; vertex 2 is the first's third, vertex 3 the other's.
 struct ClothHinge {
   int vertex[4];
+  int triangle[2];
 };
 
 struct ClothEdge {

@@ -122,15 +122,18 @@ ClothThreadList make_threads(const ClothMesh &mesh, const Vec3<double> &warp, do
     for (std::size_t j = 0; j < thread.vertices.size(); ++j) {
       list.vertices.push_back(thread.vertices[j]);
       float longest = ClothThreadList::no_link, compliance = 1;
+      int triangle = -1;
       if (j < thread.edges.size()) {
         const Vec3<float> d = mesh.vertices[at(thread.vertices[j + 1])] - mesh.vertices[at(thread.vertices[j])];
         const double rest = static_cast<double>(length(d));
         longest = static_cast<float>(rest * (1 + greatest_stretch));
+        triangle = mesh.edges[at(thread.edges[j])].triangle;
         compliance =
             static_cast<float>(rest * rest / (10 * stretch_stiffness * double(mesh.edges[at(thread.edges[j])].area)));
       }
       list.greatest_lengths.push_back(longest);
       list.compliances.push_back(compliance);
+      list.link_triangles.push_back(triangle);
     }
     list.starts.push_back(static_cast<int>(list.vertices.size()));
   }

@@ -158,7 +158,8 @@ loam_world::Moving loam_world::moving() const {
     moving.colliders.push_back(c != nullptr ? Moving::Poses{c->pose, c->target} : Moving::Poses{});
   }
   for (std::size_t i = 0; i < cloths_.slot_count(); ++i)
-    moving.cloths.push_back(cloths_.description(i) != nullptr ? cloths_.changes(i) : ClothScene::Changes());
+    moving.cloths.push_back(cloths_.description(i) != nullptr ? cloths_.changes(backend_->cloth(), i)
+                                                              : ClothScene::Changes());
   for (std::size_t i = 0; i < emitters_.slot_count(); ++i)
     moving.emitters.push_back(emitters_.at_slot(i) != nullptr ? emitters_.at_slot(i)->state() : EmitterState());
   for (std::size_t i = 0; i < fields_.slot_count(); ++i)
@@ -261,7 +262,9 @@ template <class Fields> void loam_world::exchange(Fields &fields, Moving &moving
     fields.same("particle_friction", c->def.particle_friction);
     fields.same("self_distance", c->def.self_distance);
     fields.same("self_friction", c->def.self_friction);
-    fields.list(moving.cloths[i].attachments, c->vertex_count);
+    fields.same("tear_strain", c->def.tear_strain);
+    fields.list(moving.cloths[i].torn, 3 * std::size_t(c->triangle_count));
+    fields.list(moving.cloths[i].attachments, 3 * std::size_t(c->triangle_count));
     fields.value(moving.cloths[i].wind);
   }
 
@@ -353,7 +356,11 @@ void loam_world::check(const Moving &moving) const {
     }
   for (std::size_t i = 0; i < cloths_.slot_count(); ++i)
     if (const ClothScene::Description *c = cloths_.description(i); c != nullptr) {
-      check_attachments(moving.cloths[i].attachments, c->vertex_count);
+      if (!cloths_.could_be_torn(backend_->cloth(), i, moving.cloths[i].torn)) invalid("tears a cloth as it cannot be torn");
+      std::uint32_t vertices = c->vertex_count;
+      for (const TornCorner &torn : moving.cloths[i].torn)
+        vertices = std::max(vertices, static_cast<std::uint32_t>(torn.vertex) + 1);
+      check_attachments(moving.cloths[i].attachments, vertices);
       check_wind(moving.cloths[i].wind);
       for (const SolverAttachment &a : moving.cloths[i].attachments)
         if (a.collider != -1 && (a.collider < 0 || static_cast<std::size_t>(a.collider) >= colliders_.size() ||
@@ -380,7 +387,7 @@ void loam_world::write(SnapshotWriter &writer) {
   exchange(fields, moving);
   header.field_bytes = writer.bytes() - sizeof header;
   std::vector<StateSection> state = backend_->state(backend_->particle_count());
-  cloths_.list_state(backend_->cloth(), state);
+  cloths_.list_state(backend_->cloth(), moving.cloths, state);
   for (const StateSection &section : state) writer.section(section, read);
   std::memcpy(header.magic, "LOAMSNAP", 8);
   header.version = LOAM_SNAPSHOT_VERSION;
@@ -467,7 +474,7 @@ void loam_world::restore(const std::byte *memory, std::uint64_t bytes) {
   }
   const std::uint64_t particles = snapshot.particles();
   std::vector<StateSection> state = backend_->state(std::min<std::uint64_t>(particles, def_.particle_capacity));
-  cloths_.list_state(backend_->cloth(), state);
+  cloths_.list_state(backend_->cloth(), moving.cloths, state);
   check_state(snapshot, state, moving.next_id);
 
   // Memory may be refused up to here and in these.

@@ -15,7 +15,7 @@ public:
     const Row *positions;
     Row *velocities;
     const Row *rest;
-    int vertex_count;
+    int vertex_count, vertex_capacity;
     float distance, friction;
   };
 
@@ -34,7 +34,7 @@ public:
       return;
     }
     int most = 0;
-    for (const Sheet &sheet : sheets_) most += sheet.vertex_count;
+    for (const Sheet &sheet : sheets_) most += sheet.vertex_capacity;
     const auto n = static_cast<std::size_t>(most);
     positions_.reserve(n);
     velocities_.reserve(n);

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <vector>
 
 #include "kernels/cloth/bending.h"
@@ -24,6 +25,7 @@
 #include "solver/cloth_backend.h"
 #include "solver/cloth_particles.h"
 #include "solver/cloth_self_contact.h"
+#include "solver/cloth_topology.h"
 
 namespace loam {
 
@@ -37,8 +39,15 @@ public:
   void remove(int cloth) override;
   void set_attachments(int cloth, const std::vector<SolverAttachment> &attachments) override;
   void set_wind(int cloth, const ClothWind &wind) override { at(cloth).wind = wind; }
+  std::uint32_t vertex_count(int cloth) const override {
+    return static_cast<std::uint32_t>(cloths_[static_cast<std::size_t>(cloth)].vertex_count);
+  }
   std::vector<Row> positions(int cloth) override;
-  void list_state(int cloth, std::uint32_t object, std::vector<StateSection> &list) override;
+  std::vector<TornCorner> torn_corners(int cloth) const override;
+  bool could_be_torn(int cloth, const std::vector<TornCorner> &torn) const override;
+  void set_torn_corners(int cloth, const std::vector<TornCorner> &torn) override;
+  void list_state(int cloth, const std::vector<TornCorner> &torn, std::uint32_t object,
+                  std::vector<StateSection> &list) override;
   void map(int cloth, loam_cloth_view &view) override;
 
   void shift_origin(const Vec3<float> &by) {
@@ -78,8 +87,13 @@ public:
   void solve_self_contacts(const Substep &substep) { self_contact_.solve(executor_, substep.seconds); }
   // After it a cloth's velocities stay.
   void finish(const Substep &substep, int *speed_limited, Reactions reactions);
-  void keep_particles_off(const Substep &substep);
+  void sweep_particles(const Substep &substep);
   void advance(const Substep &substep);
+  // Splits vertices of what is strained too much. Between substeps.
+  void tear();
+  // Vertices that were split, in the last step so far; a new step begins with 0.
+  std::uint64_t tear_count() const { return tears_; }
+  void begin_step() { tears_ = 0; }
   std::uint64_t constraint_count() const { return constraints_; }
   std::uint64_t vertex_count() const { return vertices_; }
   std::uint64_t contact_count() const;
@@ -111,11 +125,21 @@ private:
     ClothParticleContact<Executor> particle_contact;
     std::vector<float> inverse_masses;
     std::vector<SolverAttachment> attached;
+    Array<Row> shapes; // of cloth that tears, as the next two
+    Array<int> places;
+    std::unique_ptr<ClothTopology> topology; // null: it does not
     ClothMaterial material{};
     ClothWind wind{};
     typename ClothParticleContact<Executor>::Sheet sheet() {
-      return {positions.data(), velocities.data(), triangles.data(), vertex_count, triangle_count, material.friction};
+      return {positions.data(),
+              velocities.data(),
+              triangles.data(),
+              vertex_count,
+              triangle_count,
+              material.friction,
+              attachment_count + contact_count > 0};
     }
+    int spare_vertex = 0; // the first of those that idle lanes work on, one a lane
     int vertex_count = 0, triangle_count = 0, attachment_count = 0, contact_count = 0;
     std::uint64_t constraint_count = 0; // three a triangle, one a hinge
     float reach = 0;                    // the most that a vertex moves in this substep
@@ -131,8 +155,16 @@ private:
     array.reserve(std::max<std::size_t>(values.size(), 1));
     executor_.upload(array.data(), values.data(), values.size());
   }
-  template <class Field> Constraints interleave(const ClothConstraintList &list, int spare_vertex);
+  template <class Field> void interleave(Constraints &result, const ClothConstraintList &list, int spare_vertex);
   void add_threads(Cloth &cloth, const ClothThreadList &list);
+  void tear(Cloth &cloth);
+  // The machine's arrays as the topology says, but for positions and velocities.
+  void apply_topology(Cloth &cloth);
+  TriangleStrains strains(Cloth &cloth, const Row *positions, const int *triangles, const Row *shapes, const int *places,
+                          const float *fields) const {
+    return {positions,           triangles, shapes, places, fields, executor_.constraint_width(), cloth.material.stretch,
+            cloth.material.shear};
+  }
   template <class Stage> void for_each_colour(const Constraints &constraints, const Stage &stage) {
     for (std::size_t c = 0; c + 1 < constraints.batches.size(); ++c)
       executor_.for_each_constraint(constraints.batches[c], constraints.batches[c + 1], stage);
@@ -157,7 +189,10 @@ private:
             executor_.template array<int>(),
             ClothParticleContact<Executor>(executor_),
             {},
-            {}};
+            {},
+            executor_.template array<Row>(),
+            executor_.template array<int>(),
+            nullptr};
   }
 
   // After cloth came or went.
@@ -165,7 +200,8 @@ private:
     std::vector<typename ClothSelfContact<Executor>::Sheet> sheets;
     for_each_cloth([&](Cloth &c) {
       if (c.material.self_distance > 0.0f)
-        sheets.push_back({c.positions.data(), c.velocities.data(), c.rest.data(), c.vertex_count, c.material.self_distance,
+        sheets.push_back({c.positions.data(), c.velocities.data(), c.rest.data(), c.vertex_count,
+                          c.topology != nullptr ? c.topology->most_vertices() : c.vertex_count, c.material.self_distance,
                           c.material.self_friction});
     });
     if (!sheets.empty() || self_contact_.any()) self_contact_.set_sheets(executor_, std::move(sheets), particle_capacity_);
@@ -176,19 +212,18 @@ private:
   std::vector<Cloth> cloths_;
   ClothSelfContact<Executor> self_contact_{executor_};
   int in_use_ = 0;
-  std::uint64_t constraints_ = 0, vertices_ = 0;
+  std::uint64_t constraints_ = 0, vertices_ = 0, tears_ = 0;
 };
 
 // ------------------------------------------------------------------------------------------------ what there is ---
 
 template <class Executor>
 template <class Field>
-typename ClothSolver<Executor>::Constraints ClothSolver<Executor>::interleave(const ClothConstraintList &list,
-                                                                              int spare_vertex) {
+void ClothSolver<Executor>::interleave(Constraints &result, const ClothConstraintList &list, int spare_vertex) {
   const auto width = static_cast<std::size_t>(executor_.constraint_width());
   constexpr std::size_t vertices = Field::vertices, fields = Field::count;
   const std::size_t count = list.indices.size() / vertices, given = count > 0 ? list.fields.size() / count : 0;
-  Constraints result = {executor_.template array<int>(), executor_.template array<float>(), {0}};
+  result.batches = {0};
   for (std::size_t c = 0; c + 1 < list.starts.size(); ++c) {
     const auto size = static_cast<std::size_t>(list.starts[c + 1] - list.starts[c]);
     result.batches.push_back(result.batches.back() + static_cast<int>((size + width - 1) / width));
@@ -211,7 +246,6 @@ typename ClothSolver<Executor>::Constraints ClothSolver<Executor>::interleave(co
   }
   copy_in(result.indices, indices);
   copy_in(result.fields, values);
-  return result;
 }
 
 template <class Executor> void ClothSolver<Executor>::add_threads(Cloth &cloth, const ClothThreadList &list) {
@@ -231,7 +265,7 @@ template <class Executor> void ClothSolver<Executor>::add_threads(Cloth &cloth, 
       for (std::size_t j = 0; j < places; ++j)
         for (std::size_t lane = 0; lane < width; ++lane) {
           // Lanes stay at their last vertex when their thread has ended; those without a thread are at a spare vertex.
-          int vertex = cloth.vertex_count + static_cast<int>(lane);
+          int vertex = cloth.spare_vertex + static_cast<int>(lane);
           float longest = ClothThreadList::no_link, compliance = 1;
           if (const std::size_t thread = first + lane; thread < end) {
             const auto begin = static_cast<std::size_t>(list.starts[thread]),
@@ -259,14 +293,18 @@ template <class Executor> int ClothSolver<Executor>::add(const SolverCloth &desc
   cloth.vertex_count = static_cast<int>(n);
   cloth.triangle_count = static_cast<int>(triangles);
   cloth.material = description.material;
+  if (cloth.material.tear_strain > 0.0f) cloth.topology = std::make_unique<ClothTopology>(description);
+  const std::size_t most = cloth.topology != nullptr ? static_cast<std::size_t>(cloth.topology->most_vertices()) : n;
   // Spare vertices, one a lane, stay at the origin: their inverse mass is 0.
-  const std::size_t rows = n + static_cast<std::size_t>(executor_.constraint_width());
+  cloth.spare_vertex = static_cast<int>(most);
+  const std::size_t rows = most + static_cast<std::size_t>(executor_.constraint_width());
   cloth.positions.reserve(rows);
   cloth.velocities.reserve(rows);
   executor_.upload(cloth.positions.data(), description.positions.data(), n);
   executor_.upload(cloth.velocities.data(), description.velocities.data(), n);
   for (const Row &row : description.velocities) cloth.inverse_masses.push_back(row.w);
   copy_in(cloth.triangles, description.triangles);
+  cloth.starts.reserve(most + 1);
   std::vector<int> starts(n + 1), around(3 * triangles);
   for (const int v : description.triangles) ++starts[static_cast<std::size_t>(v) + 1];
   for (std::size_t i = 0; i < n; ++i) starts[i + 1] += starts[i];
@@ -275,12 +313,22 @@ template <class Executor> int ClothSolver<Executor>::add(const SolverCloth &desc
     around[static_cast<std::size_t>(next[static_cast<std::size_t>(description.triangles[i])]++)] = static_cast<int>(i / 3);
   copy_in(cloth.starts, starts);
   copy_in(cloth.around, around);
-  cloth.membrane = interleave<MembraneField>(description.membrane, static_cast<int>(n));
+  interleave<MembraneField>(cloth.membrane, description.membrane, cloth.spare_vertex);
+  if (cloth.topology != nullptr) {
+    copy_in(cloth.shapes, description.parts.shapes);
+    std::vector<int> places(triangles);
+    const std::vector<int> &starts_of_colours = description.membrane.starts;
+    for (std::size_t c = 0; c + 1 < starts_of_colours.size(); ++c)
+      for (int i = starts_of_colours[c]; i < starts_of_colours[c + 1]; ++i)
+        places[static_cast<std::size_t>(description.parts.membrane_triangles[static_cast<std::size_t>(i)])] =
+            cloth.membrane.batches[c] * executor_.constraint_width() + (i - starts_of_colours[c]);
+    copy_in(cloth.places, places);
+  }
   if (cloth.material.self_distance > 0.0f) {
-    cloth.rest.reserve(n);
+    cloth.rest.reserve(most);
     executor_.upload(cloth.rest.data(), description.rest.data(), n);
   }
-  cloth.hinges = interleave<HingeField>(description.hinges, static_cast<int>(n));
+  interleave<HingeField>(cloth.hinges, description.hinges, cloth.spare_vertex);
   add_threads(cloth, description.threads);
   cloth.contact_counter.reserve(1);
   const std::uint64_t constraint_count = 3 * triangles + description.hinges.indices.size() / 4;
@@ -340,10 +388,95 @@ template <class Executor> std::vector<Row> ClothSolver<Executor>::positions(int 
   return rows;
 }
 
-template <class Executor>
-void ClothSolver<Executor>::list_state(int index, std::uint32_t object, std::vector<StateSection> &list) {
+// --------------------------------------------------------------------------------------------------------- tearing ---
+
+template <class Executor> void ClothSolver<Executor>::tear() {
+  for_each_cloth([&](Cloth &cloth) {
+    if (cloth.topology != nullptr) tear(cloth);
+  });
+}
+
+template <class Executor> void ClothSolver<Executor>::tear(Cloth &cloth) {
+  const float bound = cloth.material.tear_strain;
+  const TriangleStrains there = strains(cloth, cloth.positions.data(), cloth.triangles.data(), cloth.shapes.data(),
+                                        cloth.places.data(), cloth.membrane.fields.data());
+  if (!(executor_.reduce(cloth.triangle_count, GreatestStrain{there}) > bound)) return;
+  std::vector<Row> now(static_cast<std::size_t>(cloth.vertex_count));
+  executor_.download(now.data(), cloth.positions.data(), now.size());
+  std::vector<int> places(static_cast<std::size_t>(cloth.triangle_count));
+  executor_.download(places.data(), cloth.places.data(), places.size());
+  std::vector<float> fields(static_cast<std::size_t>(cloth.membrane.batch_count()) * MembraneField::count *
+                            static_cast<std::size_t>(executor_.constraint_width()));
+  executor_.download(fields.data(), cloth.membrane.fields.data(), fields.size());
+  const TriangleStrains here = strains(cloth, now.data(), cloth.topology->corners().data(), cloth.topology->shapes().data(),
+                                       places.data(), fields.data());
+  std::vector<TriangleStrain> all;
+  for (int t = 0; t < cloth.triangle_count; ++t) all.push_back(here.of(t));
+  std::vector<int> from;
+  if (cloth.topology->tear(now, all, bound, from) == 0) return;
+  for (const int v : from) {
+    const auto made = cloth.vertex_count++;
+    executor_.copy(cloth.positions.data() + made, cloth.positions.data() + v, 1);
+    executor_.copy(cloth.velocities.data() + made, cloth.velocities.data() + v, 1);
+    if (cloth.rest.capacity() > 0)
+      executor_.copy(cloth.rest.data() + made, cloth.rest.data() + cloth.topology->origin(v), 1);
+  }
+  vertices_ += from.size();
+  tears_ += from.size();
+  apply_topology(cloth);
+}
+
+template <class Executor> void ClothSolver<Executor>::apply_topology(Cloth &cloth) {
+  const ClothTopology &topology = *cloth.topology;
+  copy_in(cloth.triangles, topology.corners());
+  std::vector<int> starts, around;
+  topology.find_triangles_around(starts, around);
+  copy_in(cloth.starts, starts);
+  copy_in(cloth.around, around);
+  interleave<MembraneField>(cloth.membrane, topology.membrane(), cloth.spare_vertex);
+  interleave<HingeField>(cloth.hinges, topology.hinges(), cloth.spare_vertex);
+  add_threads(cloth, topology.threads());
+  cloth.inverse_masses = topology.inverse_masses();
+  std::vector<Row> velocities(static_cast<std::size_t>(cloth.vertex_count));
+  executor_.download(velocities.data(), cloth.velocities.data(), velocities.size());
+  for (std::size_t i = 0; i < velocities.size(); ++i) velocities[i].w = cloth.inverse_masses[i];
+  for (const SolverAttachment &a : cloth.attached)
+    if (a.stiffness == 0.0f) velocities[static_cast<std::size_t>(a.vertex)].w = 0.0f;
+  executor_.upload(cloth.velocities.data(), velocities.data(), velocities.size());
+  if (cloth.material.self_distance > 0.0f) renew_self_contact();
+}
+
+template <class Executor> std::vector<TornCorner> ClothSolver<Executor>::torn_corners(int index) const {
+  const Cloth &cloth = cloths_[static_cast<std::size_t>(index)];
+  return cloth.topology != nullptr ? cloth.topology->torn_corners() : std::vector<TornCorner>();
+}
+
+template <class Executor> bool ClothSolver<Executor>::could_be_torn(int index, const std::vector<TornCorner> &torn) const {
+  const Cloth &cloth = cloths_[static_cast<std::size_t>(index)];
+  return cloth.topology != nullptr ? cloth.topology->accepts(torn) : torn.empty();
+}
+
+template <class Executor> void ClothSolver<Executor>::set_torn_corners(int index, const std::vector<TornCorner> &torn) {
   Cloth &cloth = at(index);
-  const auto n = static_cast<std::uint64_t>(cloth.vertex_count);
+  if (cloth.topology == nullptr) return;
+  ClothTopology &topology = *cloth.topology;
+  topology.set_torn_corners(torn);
+  vertices_ += static_cast<std::uint64_t>(topology.vertex_count());
+  vertices_ -= static_cast<std::uint64_t>(cloth.vertex_count);
+  cloth.vertex_count = topology.vertex_count();
+  if (cloth.rest.capacity() > 0)
+    for (int v = 0; v < cloth.vertex_count; ++v)
+      if (topology.origin(v) != v) executor_.copy(cloth.rest.data() + v, cloth.rest.data() + topology.origin(v), 1);
+  cloth.attached.clear(); // the caller tells which there are
+  apply_topology(cloth);
+}
+
+template <class Executor>
+void ClothSolver<Executor>::list_state(int index, const std::vector<TornCorner> &torn, std::uint32_t object,
+                                       std::vector<StateSection> &list) {
+  Cloth &cloth = at(index);
+  const auto n =
+      static_cast<std::uint64_t>(cloth.topology != nullptr ? cloth.topology->vertex_count(torn) : cloth.vertex_count);
   list.push_back({StateKind::cloth_positions, object, reinterpret_cast<std::byte *>(cloth.positions.data()), 4, 3, n});
   list.push_back({StateKind::cloth_velocities, object, reinterpret_cast<std::byte *>(cloth.velocities.data()), 4, 3, n});
 }
@@ -360,6 +493,8 @@ template <class Executor> void ClothSolver<Executor>::map(int index, loam_cloth_
   view.positions = &cloth.positions.data()->x;
   view.velocities = &cloth.velocities.data()->x;
   view.normals = &cloth.normals.data()->x;
+  view.indices = reinterpret_cast<const std::uint32_t *>(cloth.triangles.data());
+  view.triangle_count = static_cast<std::uint32_t>(cloth.triangle_count);
 }
 
 template <class Executor> std::uint64_t ClothSolver<Executor>::bytes() const {
@@ -368,8 +503,8 @@ template <class Executor> std::uint64_t ClothSolver<Executor>::bytes() const {
     sum += c.positions.bytes() + c.velocities.bytes() + c.normals.bytes() + c.rest.bytes() + c.triangles.bytes() +
            c.starts.bytes() + c.around.bytes() + c.membrane.indices.bytes() + c.membrane.fields.bytes() +
            c.hinges.indices.bytes() + c.hinges.fields.bytes() + c.threads.indices.bytes() + c.threads.fields.bytes() +
-           c.thread_starts.bytes() + c.attachments.bytes() + c.contacts.bytes() + c.contact_counter.bytes() +
-           c.particle_contact.bytes();
+           c.thread_starts.bytes() + c.attachments.bytes() + c.shapes.bytes() + c.places.bytes() + c.contacts.bytes() +
+           c.contact_counter.bytes() + c.particle_contact.bytes();
   return sum;
 }
 
@@ -378,6 +513,10 @@ template <class Executor> std::uint64_t ClothSolver<Executor>::hash(std::uint64_
     for_each_cloth([&](Cloth &cloth) {
       hash = StateHash::mix(hash, executor_.reduce(cloth.vertex_count, HashRows{cloth.positions.data()}));
       hash = StateHash::mix(hash, executor_.reduce(cloth.vertex_count, HashRows{cloth.velocities.data()}));
+      if (cloth.topology != nullptr)
+        for (const TornCorner &c : cloth.topology->torn_corners())
+          hash = StateHash::mix(StateHash::mix(hash, static_cast<std::uint64_t>(c.corner)),
+                                static_cast<std::uint64_t>(c.vertex));
     });
   });
   return hash;
@@ -395,6 +534,8 @@ template <class Executor> float ClothSolver<Executor>::least_inverse_mass() {
 
 template <class Executor> void ClothSolver<Executor>::find_contacts(const Substep &s) {
   if (self_contact_.any()) self_contact_.find(executor_, s.seconds);
+  ClothParticles particles = s.particles;
+  if (particles.count > 0) particles.speed = executor_.reduce(particles.count, GreatestSpeed{particles.velocities});
   for_each_cloth([&](Cloth &cloth) {
     const float greatest = executor_.reduce(cloth.vertex_count, GreatestSpeed{cloth.velocities.data()});
     // Twice as far as the fastest vertex goes, and as a fall from rest goes in a few substeps; nothing of the sort of a grid bounds it.
@@ -402,7 +543,7 @@ template <class Executor> void ClothSolver<Executor>::find_contacts(const Subste
                   s.seconds * (4.0f * greatest + 4.0f * s.seconds * length(s.gravity) + 2.0f * length(cloth.wind.velocity));
     if (s.particles.count > 0) cloth.reach += s.particles.radius; // what hits it may be that fast
     cloth.contact_count = 0;
-    if (s.particles.count > 0) cloth.particle_contact.find(executor_, cloth.sheet(), s.particles, s.seconds);
+    if (s.particles.count > 0) cloth.particle_contact.find(executor_, cloth.sheet(), particles, s.seconds);
     if (s.collider_count == 0) return;
     for (int attempt = 0; attempt < 2; ++attempt) {
       executor_.set(cloth.contact_counter.data(), 1, 0);
@@ -468,9 +609,7 @@ template <class Executor> void ClothSolver<Executor>::finish(const Substep &s, i
     if (s.particles.count > 0) // once more: smoothing and the speed limit have changed the particles
       for (int pass = 0; pass < 2; ++pass) cloth.particle_contact.solve(executor_, cloth.sheet(), s.particles, s.seconds);
     executor_.for_each(cloth.vertex_count, LimitSpeed{velocities, fastest, speed_limited});
-    if (s.particles.count > 0)
-      for (int pass = 0; pass < 8; ++pass)
-        cloth.particle_contact.keep_off(executor_, cloth.sheet(), s.particles, s.seconds, true);
+    if (s.particles.count > 0) cloth.particle_contact.keep_off(executor_, cloth.sheet(), s.particles, s.seconds);
     executor_.for_each(cloth.contact_count,
                        SolveContactsWithinLimit{{cloth.contacts.data(), velocities, s.seconds}, fastest, speed_limited});
     reactions.positions = cloth.positions.data();
@@ -482,14 +621,16 @@ template <class Executor> void ClothSolver<Executor>::finish(const Substep &s, i
   });
 }
 
-template <class Executor> void ClothSolver<Executor>::keep_particles_off(const Substep &s) {
-  for_each_cloth(
-      [&](Cloth &cloth) { cloth.particle_contact.keep_off(executor_, cloth.sheet(), s.particles, s.seconds, false); });
+template <class Executor> void ClothSolver<Executor>::sweep_particles(const Substep &s) {
+  // Off one cloth a particle may get to another.
+  for (int round = 0; round < (in_use_ > 1 ? 2 : 1); ++round)
+    for_each_cloth([&](Cloth &cloth) { cloth.particle_contact.sweep(executor_, cloth.sheet(), s.particles, s.seconds); });
 }
 
 template <class Executor> void ClothSolver<Executor>::advance(const Substep &s) {
   for_each_cloth([&](Cloth &cloth) {
     executor_.for_each(cloth.vertex_count, AdvanceVertices{cloth.positions.data(), cloth.velocities.data(), s.seconds});
+    if (s.particles.count > 0) cloth.particle_contact.apply(executor_, cloth.sheet(), s.particles, s.seconds);
   });
 }
 

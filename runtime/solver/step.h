@@ -16,6 +16,7 @@ template <class Executor> void Solver<Executor>::step(const StepInput &input) {
   residual_ = 0;
   virial_moment_ = 0;
   contact_count_ = 0;
+  cloth_.begin_step();
   pairs_ = 0;
   executor_.set(counters_.data(), 4, 0);
   contact_laws_.prepare(input.colliders, materials_.size()); // memory may be refused from here on: no substep was done
@@ -274,6 +275,7 @@ template <class Executor> void Solver<Executor>::finish_statistics(const StepInp
   const MotionMeasure::Value motion =
       executor_.reduce(count_, MotionMeasure{now_.positions.data(), now_.velocities.data(), now_.strains.data()});
   statistics_.particles = particles();
+  statistics_.cloth_tears = cloth_.tear_count();
   if (schedule_.sleep >= 0)
     statistics_.sleeping = static_cast<std::uint64_t>(executor_.reduce(count_, CountSleepers{now_.rests.data()}));
   statistics_.contacts =

@@ -64,7 +64,7 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
                                                          settings_.kernel_radius / h_,
                                                          counters_.data()});
   // After the contacts, which take back what they gave against what is changed here; before the sweep, for colliders let nothing pass.
-  if (schedule_.cloth_particles >= 0) cloth_.keep_particles_off(cloth_substep(input));
+  if (schedule_.cloth_particles >= 0) cloth_.sweep_particles(cloth_substep(input));
   if (contact_count_ > 0) {
     const float margin = 0.05f * 0.5f * settings_.kernel_radius;
     const int colliders = static_cast<int>(input.colliders.size());
@@ -111,6 +111,7 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
   lap(schedule_.advance, particles());
   if (!cloth_.empty()) {
     cloth_.advance(cloth_substep(input));
+    cloth_.tear();
     lap(schedule_.finish_cloth, cloth_.vertex_count());
   }
   if (schedule_.sleep >= 0 && count_ > 0) fall_asleep();

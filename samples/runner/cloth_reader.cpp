@@ -21,6 +21,7 @@ void read_material(TomlTable &table, loam_cloth_def &def) {
   table.read("particle_friction", def.particle_friction);
   table.read("self_distance", def.self_distance);
   table.read("self_friction", def.self_friction);
+  table.read("tear_strain", def.tear_strain);
   Vector3 warp = {def.warp[0], def.warp[1], def.warp[2]}, velocity;
   table.read("warp", warp);
   table.read("velocity", velocity);

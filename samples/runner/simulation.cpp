@@ -311,7 +311,7 @@ std::vector<Mesh> Simulation::read_cloths() const {
     check(loam_cloth_map(world_.get(), cloth_ids_[i], &view), scene_->cloths[i].place);
     const std::vector<float> positions = copy_to_host(view.positions, 4 * std::size_t(view.vertex_count), view.memory);
     Mesh mesh;
-    mesh.indices = scene_->meshes.at(scene_->cloths[i].file).indices;
+    mesh.indices = copy_to_host(view.indices, 3 * std::size_t(view.triangle_count), view.memory);
     check(loam_cloth_unmap(world_.get(), cloth_ids_[i]), scene_->cloths[i].place);
     for (std::size_t v = 0; v < positions.size(); v += 4)
       mesh.vertices.push_back({positions[v], positions[v + 1], positions[v + 2]});

@@ -59,6 +59,7 @@ TEST_F(ClothAbi, DefinitionsNameTheFieldThatIsWrong) {
                         {"particle_friction", &loam_cloth_def::particle_friction, {-1, 101, nan, infinity}},
                         {"self_distance", &loam_cloth_def::self_distance, {-1, 1e-7f, 1e4f, nan, infinity}},
                         {"self_friction", &loam_cloth_def::self_friction, {-1, 101, nan, infinity}},
+                        {"tear_strain", &loam_cloth_def::tear_strain, {-1, 1e-5f, 101, nan, infinity}},
                         {"thickness", &loam_cloth_def::thickness, {-1, 1e-7f, 1e4f, nan, infinity}}};
   for (const Case &c : cases)
     for (const float value : c.bad) {
@@ -81,6 +82,9 @@ TEST_F(ClothAbi, DefinitionsNameTheFieldThatIsWrong) {
   def = def_;
   def.reserved = 1;
   invalid({"reserved"}, [&] { return create(def); });
+  def = def_;
+  def.reserved_2 = 1;
+  invalid({"reserved_2"}, [&] { return create(def); });
 }
 
 TEST_F(ClothAbi, MeshesNameThePlaceThatIsWrong) {
@@ -167,6 +171,8 @@ TEST_F(ClothAbi, AttachedVerticesGoWithTheirCollider) {
     cloths::Cloth::Vertices vertices;
     vertices.positions.assign(view.positions + 12, view.positions + 15);
     EXPECT_EQ(view.vertex_count, 25u);
+    EXPECT_EQ(view.triangle_count, 32u);
+    EXPECT_EQ(std::vector<std::uint32_t>(view.indices, view.indices + 96), grid_.indices);
     EXPECT_EQ(loam_cloth_unmap(world(), cloth_), LOAM_OK);
     return vertices;
   }();

@@ -7,7 +7,7 @@
 namespace loam {
 namespace {
 
-/* A sheet that is held at a corner by a spring and falls on a floor in the wind, and another that falls onto it; the hash of what it comes to. Null if the machine lacks the instruction set. */
+/* A sheet that is held at a corner by a spring and falls on a floor in the wind, and another beside it that is torn apart; the hash of what it comes to. Null if the machine lacks the instruction set. */
 std::uint64_t hash_of(std::uint32_t threads, std::uint32_t instruction_set) {
   loam_world_def def = cloths::world_def(5, 4);
   def.thread_count = threads;
@@ -28,14 +28,17 @@ std::uint64_t hash_of(std::uint32_t threads, std::uint32_t instruction_set) {
   const cloths::Cloth cloth(world.get(), cloth_def);
   cloth.attach({grid.at(0, 0)}, {}, 0.01f);
   cloth.set_wind(3, 0, 1, 1, 0.5f);
-  const cloths::Grid small(9, 9, 0.01f);
-  loam_cloth_def other_def = cloths::definition(small);
-  other_def.position[1] = 0.09f;
-  other_def.self_distance = 0.01f;
+  const cloths::Grid torn(12, 12, 0.02f, true);
+  loam_cloth_def other_def = cloths::definition(torn);
+  other_def.self_distance = 0.021f;
+  other_def.greatest_stretch = 0.1f;
+  other_def.tear_strain = 0.05f;
   const cloths::Cloth other(world.get(), other_def);
+  other.attach({torn.at(0, 0), torn.at(12, 0)}, {-0.18f, 0, 0, 0.18f, 0, 0}, 1e-4f);
   world.add(scenes::drop_block(scenes::sand(), 6, 0.1f));
   for (int frame = 0; frame < 20; ++frame) world.step(1.0f / 60);
   EXPECT_TRUE(cloth.vertices().finite());
+  EXPECT_GT(other.vertices().count(), 169u);
   return world.state_hash();
 }
 

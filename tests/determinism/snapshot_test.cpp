@@ -203,5 +203,54 @@ TEST(SnapshotOfCloth, GoesOnWithTheSameBits) {
   EXPECT_EQ(world.state_hash(), expected);
 }
 
+/* A sheet that collides with itself is torn apart; back to when it was half torn, and to when it was whole, in this world and in another. */
+TEST(SnapshotOfCloth, KnowsHowItIsTorn) {
+  const cloths::Grid grid(12, 12, 0.02f, true);
+  loam_cloth_def cloth_def = cloths::definition(grid);
+  cloth_def.greatest_stretch = 0.1f;
+  cloth_def.tear_strain = 0.05f;
+  cloth_def.self_distance = 0.021f;
+  struct Torn {
+    scenes::World world;
+    loam_cloth_id cloth = 0;
+    explicit Torn(const cloths::Grid &grid, const loam_cloth_def &def) : world(cloths::world_def(5, 4)) {
+      const cloths::Cloth made(world.get(), def);
+      cloth = made.id;
+      made.attach({grid.at(0, 0), grid.at(12, 0)}, {-0.18f, 0, 0, 0.18f, 0, 0}, 1e-4f);
+    }
+    std::uint64_t step(int frames) {
+      std::uint64_t tears = 0;
+      for (int frame = 0; frame < frames; ++frame) {
+        world.step(1.0f / 60);
+        tears += world.statistics().cloth_tears;
+      }
+      return tears;
+    }
+  };
+  Torn torn(grid, cloth_def);
+  const snapshots::Bytes whole = snapshots::save(torn.world.get());
+  const std::uint64_t before = torn.world.state_hash();
+  ASSERT_GT(torn.step(4), 0u);
+  const snapshots::Bytes half = snapshots::save(torn.world.get());
+  const std::uint64_t then = torn.world.state_hash();
+  ASSERT_GT(half.size(), whole.size());
+  torn.step(20);
+  const std::uint64_t expected = torn.world.state_hash();
+  ASSERT_NE(then, expected);
+
+  Torn other(grid, cloth_def);
+  for (Torn *world : {&torn, &other}) {
+    snapshots::restore(world->world.get(), half);
+    EXPECT_EQ(world->world.state_hash(), then);
+    EXPECT_EQ(snapshots::save(world->world.get()), half);
+    world->step(20);
+    EXPECT_EQ(world->world.state_hash(), expected);
+  }
+  snapshots::restore(torn.world.get(), whole);
+  EXPECT_EQ(torn.world.state_hash(), before);
+  torn.step(24);
+  EXPECT_EQ(torn.world.state_hash(), expected);
+}
+
 } // namespace
 } // namespace loam

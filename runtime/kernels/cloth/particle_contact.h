@@ -3,7 +3,8 @@
 // Once a substep each particle near the cloth finds up to four points of it that it must keep away from, as half spaces relative to the cloth's motion. In the iterations
 // a particle goes through its own in turn, with accumulated impulses clipped as in kernels/contact/solve_contacts.h, and hands the vertices their share by the
 // point's barycentric weights. Many particles meet at a vertex: each sees it lighter by their number (mass splitting, Tonge et al. 2012), so that all of their
-// impulses together do not overshoot.
+// impulses together do not overshoot. For cloth that nothing holds, those that push it count, so that soon both move as one and keep their momentum. Cloth that is held
+// would give way too far like that, for what holds it is felt through the iterations of its own constraints only: there all count that might push.
 //
 // Impulses on vertices are summed in whole multiples of a quantum of velocity, by integer additions: the sum does not depend on their order. And the particle receives
 // the opposite of what its vertices really get, so no momentum is lost to the rounding.
@@ -157,18 +158,6 @@ private:
   }
 };
 
-// How many points each vertex has a part in.
-struct CountClothContacts {
-  const ClothContact *contacts;
-  int *touches;
-  LOAM_FN void operator()(int i) const {
-    const ClothContact &contact = contacts[i];
-    for (int k = 0; k < contact.count; ++k)
-      for (int j = 0; j < 3; ++j)
-        if (contact.points[k].weights[j] > 0.0f) atomic_add(touches + contact.points[k].vertices[j], 1);
-  }
-};
-
 // Impulses on the cloth, in quanta.
 struct ClothImpulses {
   const Row *velocities; // of the vertices; not written here
@@ -204,12 +193,57 @@ private:
   }
 };
 
+// What there is between a particle and a point of the cloth.
+struct ClothApproach {
+  Vec3<float> slip; // the particle's velocity past the point
+  float along;      // of it, along the normal
+  LOAM_FN ClothApproach(const ClothContactPoint &p, Vec3<float> v, const Row *vertices) {
+    Vec3<float> u = {0.0f, 0.0f, 0.0f};
+    for (int j = 0; j < 3; ++j) u = u + p.weights[j] * xyz(vertices[p.vertices[j]]);
+    slip = v - u;
+    along = dot(p.normal, slip);
+  }
+};
+
+// The velocity by which a point falls short, over 0 where it pushes. In the iterations what is too near parts slowly, and impulses may be taken back; at the end of a substep
+// nothing passes a point, and nothing is taken back.
+struct ClothShortfall {
+  float substep;
+  float margin; // to keep at the end, a small share of the stand-off; under 0: in the iterations
+  LOAM_FN float operator()(const ClothContactPoint &p, float along) const {
+    const float gap = margin < 0.0f ? p.gap : p.distance - minimum(margin, p.distance);
+    return 0.0f - (along + gap / substep);
+  }
+  LOAM_FN bool pushes(const ClothContactPoint &p, float along) const {
+    return (margin < 0.0f && p.impulse > 0.0f) || (*this)(p, along) > 0.0f;
+  }
+};
+
+// By how many points each vertex is pushed, or may be.
+struct CountClothContacts {
+  const ClothContact *contacts;
+  const Row *particle_velocities, *velocities;
+  ClothShortfall shortfall;
+  bool all; // what may
+  int *touches;
+  LOAM_FN void operator()(int i) const {
+    const ClothContact &contact = contacts[i];
+    const Vec3<float> v = xyz(particle_velocities[contact.particle]);
+    for (int k = 0; k < contact.count; ++k) {
+      const ClothContactPoint &p = contact.points[k];
+      if (!all && !shortfall.pushes(p, ClothApproach(p, v, velocities).along)) continue;
+      for (int j = 0; j < 3; ++j)
+        if (p.weights[j] > 0.0f) atomic_add(touches + p.vertices[j], 1);
+    }
+  }
+};
+
 struct SolveClothContacts {
   ClothContact *contacts;
   Row *particle_velocities;
   ClothImpulses cloth;
   const int *touches;
-  float substep;
+  ClothShortfall shortfall;
   float friction;
 
   LOAM_FN void operator()(int index) const {
@@ -219,35 +253,42 @@ struct SolveClothContacts {
     // The closest point comes last: where points contradict each other, it wins.
     for (int k = contact.count - 1; k >= 0; --k) {
       ClothContactPoint &p = contact.points[k];
-      Vec3<float> u = {0.0f, 0.0f, 0.0f};
+      const ClothApproach approach(p, v, cloth.velocities);
+      if (!shortfall.pushes(p, approach.along)) continue;
       float weight = row.w;
       for (int j = 0; j < 3; ++j) {
-        const Row vertex = cloth.velocities[p.vertices[j]];
-        u = u + p.weights[j] * xyz(vertex);
-        weight += p.weights[j] * p.weights[j] * vertex.w * static_cast<float>(touches[p.vertices[j]]);
+        const int vertex = p.vertices[j];
+        weight +=
+            p.weights[j] * p.weights[j] * cloth.velocities[vertex].w * maximum(1.0f, static_cast<float>(touches[vertex]));
       }
       if (!(weight > 0.0f)) continue;
-      const Vec3<float> slip = v - u;
-      const float along = dot(p.normal, slip);
-      const float impulse = maximum(0.0f, p.impulse - (along + p.gap / substep) / weight);
-      Vec3<float> change = (impulse - p.impulse) * p.normal;
-      p.impulse = impulse;
-      Vec3<float> wanted = p.friction - (1.0f / weight) * (slip - along * p.normal);
-      const float size = length(wanted), limit = friction * impulse;
-      if (size > limit) wanted = (limit / size) * wanted;
-      change = change + (wanted - p.friction);
-      p.friction = wanted;
-      v = v + row.w * cloth.hand_over(p, change);
+      v = v + row.w * cloth.hand_over(p, answer(p, approach, weight));
     }
     row.x = v.x;
     row.y = v.y;
     row.z = v.z;
+  }
+
+private:
+  LOAM_FN Vec3<float> answer(ClothContactPoint &p, const ClothApproach &approach, float weight) const {
+    const float more = shortfall(p, approach.along) / weight;
+    if (!(shortfall.margin < 0.0f)) return more * p.normal;
+    const float impulse = maximum(0.0f, p.impulse + more);
+    const Vec3<float> change = (impulse - p.impulse) * p.normal;
+    p.impulse = impulse;
+    Vec3<float> wanted = p.friction - (1.0f / weight) * (approach.slip - approach.along * p.normal);
+    const float size = length(wanted), limit = friction * impulse;
+    if (size > limit) wanted = (limit / size) * wanted;
+    const Vec3<float> rubbed = wanted - p.friction;
+    p.friction = wanted;
+    return change + rubbed;
   }
 };
 
 struct ApplyClothChanges {
   Row *velocities;
   int *changes;
+  int *touches; // to be counted anew; null: they stay
   float quantum;
   LOAM_FN void operator()(int i) const {
     int *change = changes + 3 * static_cast<long>(i);
@@ -256,44 +297,7 @@ struct ApplyClothChanges {
     v.y += quantum * static_cast<float>(change[1]);
     v.z += quantum * static_cast<float>(change[2]);
     change[0] = change[1] = change[2] = 0;
-  }
-};
-
-// At the end of a substep: no particle passes a point that it has found. First both give way, in a few passes; then, when the cloth's velocities are final, what is
-// left is taken from the particle alone.
-struct KeepOffCloth {
-  const ClothContact *contacts;
-  Row *particle_velocities;
-  ClothImpulses cloth;
-  const int *touches; // null: the particle alone
-  float substep;
-  float margin; // a small share of the stand-off
-
-  LOAM_FN void operator()(int index) const {
-    const ClothContact &contact = contacts[index];
-    Row &row = particle_velocities[contact.particle];
-    Vec3<float> v = xyz(row);
-    for (int k = contact.count - 1; k >= 0; --k) {
-      const ClothContactPoint &p = contact.points[k];
-      Vec3<float> u = {0.0f, 0.0f, 0.0f};
-      float weight = row.w;
-      for (int j = 0; j < 3; ++j) {
-        const Row vertex = cloth.velocities[p.vertices[j]];
-        u = u + p.weights[j] * xyz(vertex);
-        if (touches != nullptr)
-          weight += p.weights[j] * p.weights[j] * vertex.w * static_cast<float>(touches[p.vertices[j]]);
-      }
-      const float left = p.distance + substep * dot(p.normal, v - u);
-      const float missing = minimum(margin, p.distance) - left;
-      if (!(missing > 0.0f && weight > 0.0f)) continue;
-      if (touches != nullptr)
-        v = v + row.w * cloth.hand_over(p, (missing / (substep * weight)) * p.normal);
-      else
-        v = v + (missing / substep) * p.normal;
-    }
-    row.x = v.x;
-    row.y = v.y;
-    row.z = v.z;
+    if (touches != nullptr) touches[i] = 0;
   }
 };
 

@@ -1,0 +1,70 @@
+// How much a cloth's triangles are stretched, for tearing.
+//
+// Two answers: the strain that the vertices' positions show, and the strain that goes with the forces that the triangle's constraints gave in the last substep. Where the
+// solver has converged they are the same. Where iterations are too few for a cloth's size, or damping makes it slow to answer, its positions show far more than the load
+// would stretch it, while forces balance the load all the same; in a sudden jerk forces go beyond what the positions show. The lesser of the two counts.
+#pragma once
+
+#include "kernels/cloth/constraints.h"
+
+namespace loam {
+
+// The greatest stretch of a triangle in any direction, less 1, and that direction in space, as long as the stretch.
+struct TriangleStrain {
+  float strain;
+  Vec3<float> direction;
+};
+
+// The greatest eigenvalue of the matrix of the products of w_u and w_v, the images of the unit vectors along warp and weft (see membrane.h), is the greatest
+// squared stretch.
+struct SquaredStretch {
+  float uu, vv, uv;
+  LOAM_FN float half() const { return 0.5f * (uu - vv); }
+  LOAM_FN float root() const { return square_root(half() * half() + uv * uv); }
+  LOAM_FN float strain() const { return square_root(maximum(0.0f, 0.5f * (uu + vv) + root())) - 1.0f; }
+};
+
+struct TriangleStrains {
+  const Row *positions;
+  const int *triangles;
+  const Row *shapes;   // the four numbers of MembraneField that turn edges into w_u and w_v
+  const int *places;   // of the triangles' constraints: batch times width plus lane
+  const float *fields; // of the constraints
+  int width;
+  float stretch, shear; // stiffnesses, N/m
+
+  LOAM_FN TriangleStrain of(int i) const {
+    const int *t = triangles + 3 * static_cast<long>(i);
+    const Row shape = shapes[i];
+    const Vec3<float> x = xyz(positions[t[0]]), e1 = xyz(positions[t[1]]) - x, e2 = xyz(positions[t[2]]) - x;
+    const Vec3<float> u = shape.x * e1 + shape.y * e2, v = shape.z * e1 + shape.w * e2;
+    const SquaredStretch shown = {dot(u, u), dot(v, v), dot(u, v)};
+    const float along = shown.uu >= shown.vv ? shown.half() + shown.root() : shown.uv;
+    const float across = shown.uu >= shown.vv ? shown.uv : shown.root() - shown.half();
+    const float size = square_root(along * along + across * across);
+    const Vec3<float> direction = size > 0.0f ? (1.0f / size) * (along * u + across * v) : u;
+    return {minimum(shown.strain(), borne(i, shown.uv).strain()), direction};
+  }
+
+private:
+  LOAM_FN SquaredStretch borne(int i, float uv) const {
+    const int place = places[i];
+    const float *own = fields + static_cast<long>(place / width) * MembraneField::count * width + place % width;
+    const float area = own[MembraneField::area * width], *forces = own + MembraneField::force * width;
+    const float u = 1.0f - forces[0] / (stretch * area), v = 1.0f - forces[width] / (stretch * area);
+    return {u * u, v * v, shear > 0.0f ? 0.0f - forces[2 * width] / (shear * area) : uv};
+  }
+};
+
+struct GreatestStrain {
+  using Value = float;
+  TriangleStrains strains;
+  LOAM_FN static Value identity() { return -1.0f; }
+  LOAM_FN Value operator()(int i) const {
+    const float strain = strains.of(i).strain;
+    return is_finite(strain) ? strain : -1.0f;
+  }
+  LOAM_FN static Value combine(Value a, Value b) { return maximum(a, b); }
+};
+
+} // namespace loam
