@@ -23,7 +23,7 @@ from matplotlib import pyplot  # noqa: E402  (the backend is chosen before)
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 DOCUMENT = ROOT / "docs" / "effects.md"
 PLOT = ROOT / "docs" / "images" / "effects.svg"
-COLOURS = {"solver": "#4c72b0", "materials": "#dd8452", "colliders": "#55a868", "cloth": "#8172b3",
+COLOURS = {"solver": "#4c72b0", "materials": "#dd8452", "colliders": "#55a868", "cloth": "#8172b3", "streams": "#c44e52",
            "host": "#937860"}
 
 

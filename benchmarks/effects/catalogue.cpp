@@ -132,6 +132,50 @@ void add_cloth(Setup &setup, float height) {
 void cloth_far_away(Setup &setup) { add_cloth(setup, 1); }
 void cloth_on_the_sand(Setup &setup) { add_cloth(setup, 0.6f * spacing); }
 
+/* ---------------------------------------------------------------------------------- what comes, goes and blows --- */
+
+void room_for_a_stream(Setup &setup) { setup.def.particle_capacity = setup.scene.count() + 8192; }
+
+/* Beside the sand, 3 cm in radius, at 1 m/s: 29 particles every 10 ms. */
+void stream(Setup &setup) {
+  room_for_a_stream(setup);
+  const Box box = bounds(setup.scene);
+  setup.additions.push_back([=](loam_world *world, loam_material_id sand) {
+    loam_emitter_def def;
+    require(loam_emitter_def_default(&def, sizeof def), "loam_emitter_def_default");
+    def.material = sand;
+    def.position[0] = box.upper[0] + 0.5f;
+    def.position[1] = 1;
+    def.radius = 3 * spacing;
+    loam_emitter_id emitter;
+    require(loam_emitter_create(world, &def, &emitter), "loam_emitter_create");
+  });
+}
+
+/* That takes nothing: a box far below, or an age that nothing reaches. */
+template <std::uint32_t Kind> void killer(Setup &setup) {
+  setup.additions.push_back([](loam_world *world, loam_material_id) {
+    loam_killer_def def;
+    require(loam_killer_def_default(&def, sizeof def), "loam_killer_def_default");
+    def.kind = Kind;
+    def.position[1] = -10;
+    for (float &half : def.half_extents) half = 1;
+    def.age = 1e6f;
+    loam_killer_id killer;
+    require(loam_killer_create(world, &def, &killer), "loam_killer_create");
+  });
+}
+
+void wind(Setup &setup) {
+  setup.additions.push_back([](loam_world *world, loam_material_id) {
+    loam_field_def def;
+    require(loam_field_def_default(&def, sizeof def), "loam_field_def_default");
+    def.rate = 0.01f;
+    loam_field_id field;
+    require(loam_field_create(world, &def, &field), "loam_field_create");
+  });
+}
+
 /* ---------------------------------------------------------------------------------------------- the host's --- */
 
 void kept_frames(Setup &setup) {
@@ -192,6 +236,10 @@ std::vector<Effect> all() {
       {"colliders", "a mesh of 20 480 triangles", "the same sphere", nullptr, ball_of_triangles<5>},
       {"cloth", "cloth, touching nothing", "2 401 vertices, held at its corners", nullptr, cloth_far_away},
       {"cloth", "cloth on sand", "2 401 vertices, lying on it", nullptr, cloth_on_the_sand},
+      {"streams", "a stream", "29 particles every 10 ms, beside the sand", room_for_a_stream, stream},
+      {"streams", "a killer's box", "takes nothing", nullptr, killer<LOAM_KILLER_BOX>},
+      {"streams", "a killer of old particles", "takes nothing", nullptr, killer<LOAM_KILLER_AGE>},
+      {"streams", "a wind", "light", nullptr, wind},
       {"host", "densities mapped after every step", "", nullptr, mapped_densities},
       {"host", "a frame kept after every step", "", nullptr, kept_frames},
   };
