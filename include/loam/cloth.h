@@ -66,8 +66,8 @@ typedef struct loam_cloth_def {
 
   /* The strain, of a triangle in any direction, above which the cloth tears: a vertex there is split, and a copy in the same place goes to the triangles on one side of the tear. So
    * there are more vertices, behind those there were, and other indices, see loam_cloth_view; what held a vertex holds the larger part. Tears go on from their ends by a
-   * vertex a substep, and begin at the most strained triangle. What counts is the strain of the load that the triangle bears, and no more than the strain that shows; so cloth that
-   * hangs too long because iterations are few does not tear for that, but it swings and tears early (a strip at 20 iterations, 8 substeps and a damping of 0.02 s at 0.046 instead of
+   * vertex a substep, and begin at the most strained triangle. What counts is the strain of the load that the triangle bears, but no more than the strain that shows and no less
+   * than a fifth of it; so cloth that hangs too long because iterations are few does not soon tear for that, but it swings and tears early (a strip at 20 iterations, 8 substeps and a damping of 0.02 s at 0.046 instead of
    * 0.1). 1e-4 to 100; 0 (the default): never. Threads (greatest_stretch) are stiffer than the membrane: a load that stretches by more than greatest_stretch needs ten
    * times the force for every further strain. Cloth that may tear takes memory for all the vertices that it could fall into. */
   float tear_strain;

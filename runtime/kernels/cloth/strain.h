@@ -2,7 +2,8 @@
 //
 // Two answers: the strain that the vertices' positions show, and the strain that goes with the forces that the triangle's constraints gave in the last substep. Where the
 // solver has converged they are the same. Where iterations are too few for a cloth's size, or damping makes it slow to answer, its positions show far more than the load
-// would stretch it, while forces balance the load all the same; in a sudden jerk forces go beyond what the positions show. The lesser of the two counts.
+// would stretch it, while forces balance the load all the same; in a sudden jerk forces go beyond what the positions show. The lesser of the two counts;
+// but a fifth of what shows at least, for where iterations are far too few, forces show nothing.
 #pragma once
 
 #include "kernels/cloth/constraints.h"
@@ -43,7 +44,8 @@ struct TriangleStrains {
     const float across = shown.uu >= shown.vv ? shown.uv : shown.root() - shown.half();
     const float size = square_root(along * along + across * across);
     const Vec3<float> direction = size > 0.0f ? (1.0f / size) * (along * u + across * v) : u;
-    return {minimum(shown.strain(), borne(i, shown.uv).strain()), direction};
+    const float strain = shown.strain();
+    return {maximum(minimum(strain, borne(i, shown.uv).strain()), 0.2f * strain), direction};
   }
 
 private:
