@@ -93,10 +93,13 @@ void add_cases() {
 
   for (const loam_material_def &material : scenes::each_law()) {
     if (material.law == LOAM_LAW_DRUCKER_PRAGER) continue; // the headline
-    Case other;
-    other.name = std::string(material.name) + "/gauss-seidel/auto/threads:1";
-    other.material = material;
-    add_library(other);
+    for (std::uint32_t threads = 1; threads <= (material.law == LOAM_LAW_FLUID ? most_threads : 1); ++threads) {
+      Case other;
+      other.name = std::string(material.name) + "/gauss-seidel/auto/threads:" + std::to_string(threads);
+      other.material = material;
+      other.threads = threads;
+      add_library(other);
+    }
   }
 
   for (std::uint32_t threads = 1; threads <= most_threads; ++threads) add_cloth(200, threads);

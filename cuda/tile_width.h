@@ -14,6 +14,8 @@ template <class Stage> struct SequentialOverNeighbours : std::is_base_of<Correct
 // A stage whose visits are ordered: blocks of one colour at once, the particles of a block in turn. All others visit every particle at once.
 template <class Stage> struct InTurn : std::is_same<Stage, CorrectPositionsInTurn> {};
 template <class Law, class Multiplier> struct InTurn<SolveInelastic<Law, Multiplier>> : std::true_type {};
+template <FluidMotion Motion> struct InTurn<SolveFluid<Motion>> : std::true_type {};
+template <FluidMotion Motion> struct InTurn<StartFluid<Motion>> : std::true_type {};
 
 // 16 lanes for the usual 26 to 28 neighbours: two rounds that are mostly full, and the part of a visit that every lane repeats (the law) is
 // shared by two particles to a warp.

@@ -230,6 +230,7 @@ std::vector<Effect> all() {
       {"materials", "Herschel-Bulkley", "half the sand is shaving foam", two_sands,
        upper_half_of<LOAM_LAW_HERSCHEL_BULKLEY>},
       {"materials", "Stomakhin's snow", "half the sand is snow", two_sands, upper_half_of<LOAM_LAW_STOMAKHIN_SNOW>},
+      {"materials", "fluid", "half the sand is water", two_sands, upper_half_of<LOAM_LAW_FLUID>},
       {"colliders", "a sphere", "touches the sand", nullptr, sphere<false>},
       {"colliders", "its reaction", "the sphere asks for it", sphere<false>, sphere<true>},
       {"colliders", "a mesh of 1 280 triangles", "the same sphere", nullptr, ball_of_triangles<3>},

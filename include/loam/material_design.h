@@ -18,7 +18,7 @@ extern "C" {
 /* -------------------------------------------------------------------------------------------------- presets --- */
 
 /* Fills a definition, its name included, with a material known by name: "dry sand", "wet sand", "packed snow", "powder snow", "plasticine",
- * "aluminium", "candy", "shaving foam", "paint", "toothpaste", "dough", "mud". SI values of the real matter where they are known, but for
+ * "aluminium", "candy", "shaving foam", "paint", "toothpaste", "dough", "mud", "water". SI values of the real matter where they are known, but for
  * Young's moduli, which are such as games can afford; aluminium is scaled as a whole, stiffness and strength, to a ten-thousandth.
  * Errors: INVALID_ARGUMENT for null, an unknown size, or a name that is none of these; the text then lists them. */
 LOAM_API loam_status loam_material_def_preset(const char *name, loam_material_def *def, size_t size);

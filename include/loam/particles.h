@@ -121,7 +121,11 @@ typedef struct loam_particle_view {
   const float
       *strains; /* stride of 6 floats xx, yy, zz, xy, xz, yz: b - I with b the elastic left Cauchy-Green tensor; the Hencky
                               * strain is log(I + this) / 2 */
-  const float *densities; /* kg/m^3: mass over present volume; 0 for pinned particles */
+  const float *densities; /* kg/m^3: mass over present volume; 0 for pinned particles. Of a FLUID: at the start of the last
+                           * substep, from the kernel's sum; strains hold the volume change there, 1 / compression - 1, three times */
+  const float *
+      histories; /* the number that a particle's law remembers: the pressure in Pa of a FLUID, `consolidation` of NACC, see material.h;
+                           * null while no material of the world has any */
 } loam_particle_view;
 
 /* Gives the pointers. They are valid until loam_particles_unmap or loam_world_destroy; in between, calls that would change the particles

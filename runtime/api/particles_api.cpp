@@ -68,6 +68,9 @@ loam_status loam_particles_count(const loam_world *world, uint64_t *count) {
   });
 }
 
+// What loam_particle_view was before it had histories.
+static constexpr size_t first_view_size = offsetof(loam_particle_view, histories);
+
 loam_status loam_particles_map(loam_world *world, loam_particle_view *view) {
   return guarded(world, [&] {
     check_pointer(world, "world");
@@ -76,9 +79,9 @@ loam_status loam_particles_map(loam_world *world, loam_particle_view *view) {
     const uint32_t size = view->struct_size;
     // checked before mapping, so that a failure leaves nothing mapped
     loam_particle_view probe = {};
-    write_definition(&probe, "view", size, values);
+    write_definition(&probe, "view", size, values, {first_view_size});
     world->map(values);
-    write_definition(view, "view", size, values);
+    write_definition(view, "view", size, values, {first_view_size});
   });
 }
 
@@ -88,9 +91,10 @@ loam_status loam_particles_keep(loam_world *world, loam_particle_view *view) {
     check_pointer(view, "view");
     loam_particle_view values = {}, probe = {};
     const uint32_t size = view->struct_size;
-    write_definition(&probe, "view", size, values); // checked first, so that a failure leaves an earlier frame
+    write_definition(&probe, "view", size, values,
+                     {first_view_size}); // checked first, so that a failure leaves an earlier frame
     world->backend().keep(values);
-    write_definition(view, "view", size, values);
+    write_definition(view, "view", size, values, {first_view_size});
   });
 }
 

@@ -109,7 +109,7 @@ void check_plasticity(const loam_material_def &def) {
 } // namespace
 
 loam_material_def default_material(std::uint32_t law) {
-  check_choice("law", law, LOAM_LAW_STOMAKHIN_SNOW);
+  check_choice("law", law, LOAM_LAW_FLUID);
   if (law == LOAM_LAW_NACC) return preset("packed snow");
   if (law == LOAM_LAW_HERSCHEL_BULKLEY) return preset("shaving foam");
   loam_material_def def = {};
@@ -128,6 +128,11 @@ loam_material_def default_material(std::uint32_t law) {
     def.density = 1500;
     def.youngs_modulus = 1e6f;
     def.yield_stress = 5e3f;
+    break;
+  case LOAM_LAW_FLUID:
+    name = "water";
+    def.density = 1000;
+    def.poissons_ratio = 0;
     break;
   case LOAM_LAW_STOMAKHIN_SNOW:
     name = "snow";
@@ -150,16 +155,18 @@ loam_material_def default_material(std::uint32_t law) {
 }
 
 void check_material(const loam_material_def &def) {
-  check_choice("law", def.law, LOAM_LAW_STOMAKHIN_SNOW);
+  check_choice("law", def.law, LOAM_LAW_FLUID);
   check_range("density", static_cast<double>(def.density), 1e-3, 1e6);
-  check_range("youngs_modulus", static_cast<double>(def.youngs_modulus), 1, 1e13);
-  check_range("poissons_ratio", static_cast<double>(def.poissons_ratio), 0, static_cast<double>(0.49f));
+  if (def.law != LOAM_LAW_FLUID) check_range("youngs_modulus", static_cast<double>(def.youngs_modulus), 1, 1e13);
+  if (def.law != LOAM_LAW_FLUID)
+    check_range("poissons_ratio", static_cast<double>(def.poissons_ratio), 0, static_cast<double>(0.49f));
   check_plasticity(def);
   if (std::memchr(def.name, 0, sizeof def.name) == nullptr)
     throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("name is not terminated within its %zu bytes", sizeof def.name));
 }
 
 double stiffness_share(const loam_material_def &def, double kernel_radius, double substep, std::uint32_t iterations) {
+  if (def.law == LOAM_LAW_FLUID) return 1; // it has no stiffness
   const Moduli m = moduli_of(def);
   const double speed = iterations * kernel_radius / substep;
   const double most = static_cast<double>(def.density) * speed * speed;
@@ -180,6 +187,8 @@ LawVariant make_law(const loam_material_def &given, double stiffness_share) {
     return make_nacc(def, m);
   case LOAM_LAW_HERSCHEL_BULKLEY:
     return make_herschel_bulkley(def, m);
+  case LOAM_LAW_FLUID:
+    return Fluid{{{0, 0}}};
   case LOAM_LAW_STOMAKHIN_SNOW:
     return make_stomakhin_snow(def, m);
   default:

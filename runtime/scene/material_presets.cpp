@@ -66,6 +66,8 @@ constexpr loam_material_def snow(const Elasticity &elasticity, float hardening_f
   return def;
 }
 
+constexpr loam_material_def fluid(float density) { return of_law(LOAM_LAW_FLUID, {density, 1e6f, 0.3f}); }
+
 struct Preset {
   const char *name;
   loam_material_def def; // without its name
@@ -92,6 +94,7 @@ constexpr Preset presets[] = {
     {"toothpaste", viscoplastic({1300, 2e4f, 0.48f}, 150, 80, 0.45f)},
     {"dough", viscoplastic({1150, 4e4f, 0.45f}, 500, 1500, 0.35f)},
     {"mud", viscoplastic({1500, 3e4f, 0.45f}, 80, 5, 1)},
+    {"water", fluid(1000)},
 };
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "schedule/schedule.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace loam {
@@ -22,6 +23,9 @@ void Schedule::compile(const SceneContents &contents) {
   if (contents.cloth && (contents.surroundings.colliders || contents.particles || contents.cloth_self_contact))
     find_cloth_contacts = add("find cloth contacts");
   if (contents.cloth) prepare_cloth = add("prepare cloth");
+  const bool fluids = std::any_of(contents.materials.begin(), contents.materials.end(),
+                                  [](const SceneContents::Material &material) { return material.in_use && material.fluid; });
+  if (fluids) prepare_fluids = add("prepare fluids");
   for (const SceneContents::Material &material : contents.materials)
     solve.push_back(material.in_use ? add("solve " + material.name) : -1);
   if (contents.position_correction) position_correction = add("position correction");
@@ -34,7 +38,8 @@ void Schedule::compile(const SceneContents &contents) {
   speed_limit = add("speed limit");
   if (contents.surroundings.colliders) final_contacts = add("final contacts");
   for (const SceneContents::Material &material : contents.materials)
-    strain.push_back(material.in_use ? add("strain " + material.name) : -1);
+    strain.push_back(material.in_use && !material.fluid ? add("strain " + material.name) : -1);
+  if (fluids) displace_fluids = add("displace fluids");
   advance = add("advance");
   if (contents.cloth) finish_cloth = add("finish cloth");
   if (contents.sleep) sleep = add("sleep");

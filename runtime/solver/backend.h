@@ -25,7 +25,8 @@
 namespace loam {
 
 template <class List> struct VariantOf;
-template <class... Types> struct VariantOf<TypeList<Types...>> { using Type = std::variant<Types...>; };
+template <class... Types> struct VariantOf<TypeList<Types...>> { using Type = std::variant<Types..., Fluid>; };
+// A material is of a law or a fluid.
 using LawVariant = VariantOf<Laws>::Type;
 
 // A material as the solver sees it. Its index is that of the particles' material numbers.

@@ -86,7 +86,7 @@ public:
   }
 
   // The particles' ways end where the cloth is; it receives its part of that by apply(), when it has moved.
-  void sweep(Executor &ex, const Sheet &sheet, const ClothParticles &particles, float substep) {
+  void sweep(Executor &ex, const Sheet &sheet, const ClothParticles &particles, float substep, bool pushes_back) {
     const float fastest = 1.7321f * ex.reduce(sheet.vertex_count, GreatestSpeed{sheet.velocities});
     SweepCloth stage = {contacts_.data(),
                         particles.positions,
@@ -100,7 +100,7 @@ public:
                         margin(particles),
                         0.75f * particles.radius,
                         substep * fastest,
-                        sheet.held};
+                        sheet.held || !pushes_back};
     ex.for_each(count_, stage);
     stage.contacts = nullptr;
     ex.for_each(particles.count, stage);

@@ -87,7 +87,8 @@ public:
   void solve_self_contacts(const Substep &substep) { self_contact_.solve(executor_, substep.seconds); }
   // After it a cloth's velocities stay.
   void finish(const Substep &substep, int *speed_limited, Reactions reactions);
-  void sweep_particles(const Substep &substep);
+  // Ways that are not those of velocities push nothing back.
+  void sweep_particles(const Substep &substep, bool pushes_back = true);
   void advance(const Substep &substep);
   // Splits vertices of what is strained too much. Between substeps.
   void tear();
@@ -621,10 +622,11 @@ template <class Executor> void ClothSolver<Executor>::finish(const Substep &s, i
   });
 }
 
-template <class Executor> void ClothSolver<Executor>::sweep_particles(const Substep &s) {
+template <class Executor> void ClothSolver<Executor>::sweep_particles(const Substep &s, bool pushes_back) {
   // Off one cloth a particle may get to another.
   for (int round = 0; round < (in_use_ > 1 ? 2 : 1); ++round)
-    for_each_cloth([&](Cloth &cloth) { cloth.particle_contact.sweep(executor_, cloth.sheet(), s.particles, s.seconds); });
+    for_each_cloth(
+        [&](Cloth &cloth) { cloth.particle_contact.sweep(executor_, cloth.sheet(), s.particles, s.seconds, pushes_back); });
 }
 
 template <class Executor> void ClothSolver<Executor>::advance(const Substep &s) {

@@ -8,6 +8,8 @@
 #include "kernels/contact/find_contacts.h"
 #include "kernels/contact/solve_contacts.h"
 #include "kernels/contact/sweep_contacts.h"
+#include "kernels/fluid/displacements.h"
+#include "kernels/fluid/measure_fluid.h"
 #include "kernels/integration/edit_particles.h"
 #include "kernels/integration/integrate.h"
 #include "kernels/integration/measures.h"
@@ -22,6 +24,7 @@
 #include "solver/collider_shapes.h"
 #include "solver/contact_laws.h"
 #include "solver/fields.h"
+#include "solver/fluid_state.h"
 #include "solver/stages.h"
 
 namespace loam {
@@ -70,15 +73,16 @@ private:
     Array<float> free_distances; // while there are colliders
     Array<float> rests;          // where something may sleep
     Array<float> ages;           // while a killer asks
+    Array<float> displacements;  // where there is fluid
     ParticleArrays arrays() {
-      return {positions.data(), velocities.data(),     strains.data(),      histories.data(),
-              drifts.data(),    log_volumes.data(),    rest_volumes.data(), ids.data(),
-              materials.data(), free_distances.data(), rests.data(),        ages.data()};
+      return {positions.data(),   velocities.data(),   strains.data(),      histories.data(), drifts.data(),
+              log_volumes.data(), rest_volumes.data(), ids.data(),          materials.data(), free_distances.data(),
+              rests.data(),       ages.data(),         displacements.data()};
     }
     std::uint64_t bytes() const {
       return positions.bytes() + velocities.bytes() + strains.bytes() + histories.bytes() + drifts.bytes() +
              log_volumes.bytes() + rest_volumes.bytes() + ids.bytes() + materials.bytes() + free_distances.bytes() +
-             rests.bytes() + ages.bytes();
+             rests.bytes() + ages.bytes() + displacements.bytes();
     }
   };
   ParticleStorage make_storage() {
@@ -87,7 +91,8 @@ private:
             executor_.template array<float>(),         executor_.template array<float>(),
             executor_.template array<float>(),         executor_.template array<std::uint32_t>(),
             executor_.template array<std::uint32_t>(), executor_.template array<float>(),
-            executor_.template array<float>(),         executor_.template array<float>()};
+            executor_.template array<float>(),         executor_.template array<float>(),
+            executor_.template array<float>()};
   }
   void reserve_storage(ParticleStorage &storage, std::size_t rows);
   void reserve_histories();
@@ -126,6 +131,24 @@ private:
   void solve_in_turn();
   void solve_at_once();
   void correct_positions();
+  JacobiRows jacobi_rows();
+  void apply_at_once(const JacobiRows &rows);
+  // Of fluids, in fluid.h.
+  void meet_fluids(const std::vector<SolverMaterial> &materials, std::vector<float> &table);
+  template <class F> void for_each_fluid(F &&f);
+  void reserve_fluids();
+  void prepare_fluids();
+  void start_fluids();
+  template <FluidTurn Turn> void solve_fluids_at_once(const JacobiRows &rows);
+  JacobiRows empty_jacobi_rows();
+  template <class Stage> void solve_fluids_in_turn(const Stage &stage);
+  void displace_fluids(const StepInput &input);
+  void finish_displacements();
+  void measure_fluids(const std::uint32_t *materials, const float *strains, float *densities);
+  bool is_fluid_material(int material) const {
+    return std::holds_alternative<Fluid>(materials_[static_cast<std::size_t>(material)].law);
+  }
+  void sweep_contacts(const Reactions &reactions = {});
   void measure(const Vec3<float> &gravity);
   void finish_statistics(const StepInput &input);
   float greatest_mass();
@@ -134,20 +157,23 @@ private:
   }
   // Calls f(law, limit, multiplier form) with what holds inside the iterations.
   template <class F> void with_constraint(int material, F &&f);
-  Meetings meetings_of(int material) const {
+  // Two tables: of whose gradients hold what, and of whose gradients move what. They differ for fluids.
+  enum Table : std::size_t { holds = 0, reach = 1 };
+  Meetings meetings_of(int material, Table table = holds) const {
     const auto m = static_cast<std::size_t>(material);
-    if (!contact_between_materials_ || materials_[m].meetings.empty()) return {};
-    return {now_.materials.data(), meetings_.data() + m * materials_.size()};
+    if (!contact_between_materials_ || (!fluids_.in_use && materials_[m].meetings.empty())) return {};
+    const std::size_t offset = fluids_.in_use && table == reach ? materials_.size() : 0;
+    return {now_.materials.data(), meetings_.data() + (offset + m) * materials_.size()};
   }
   // Launches make(meetings) for all particles at once, or material by material where they meet others differently.
-  template <class Make> void for_each_particle_meeting(Make &&make) {
+  template <class Make> void for_each_particle_meeting(Make &&make, Table table = holds) {
     if (!contact_between_materials_) {
       executor_.for_each_particle(now_.velocities.data(), make(Meetings{}));
       return;
     }
     for (int m = 0; m < static_cast<int>(materials_.size()); ++m)
       if (materials_[static_cast<std::size_t>(m)].in_use)
-        executor_.for_each_particle_of(m, now_.velocities.data(), make(meetings_of(m)));
+        executor_.for_each_particle_of(m, now_.velocities.data(), make(meetings_of(m, table)));
   }
   float drift_stiffness() const {
     return settings_.zero_energy_stiffness / (settings_.kernel_radius * settings_.kernel_radius);
@@ -167,7 +193,7 @@ private:
   int material_capacity_ = 0;
   int count_ = 0;
   std::size_t spare_row_ = 0; // index of the first
-  bool histories_in_use_ = false, drifts_in_use_ = false;
+  bool histories_in_use_ = false, drifts_in_use_ = false, displacements_in_use_ = false;
   int record_size_ = 0;
 
   ParticleStorage now_, other_;
@@ -179,20 +205,23 @@ private:
   Array<int> counters_;                                         // speed limited, strain limited, contacts, strain decomposed
   Array<float> corrections_, densities_;
   Array<float> meetings_; // material by material
-  bool contact_between_materials_ = false;
+  bool contact_between_materials_ = false, distance_between_materials_ = false;
   Array<Row> jacobi_rows_[3], jacobi_drift_rows_[3];
+  FluidState<Executor> fluids_{executor_};
   struct KeptFrame {
     Array<Row> positions, velocities;
-    Array<float> strains, densities;
+    Array<float> strains, densities, histories;
     Array<std::uint32_t> ids, materials;
     std::uint64_t bytes() const {
-      return positions.bytes() + velocities.bytes() + strains.bytes() + densities.bytes() + ids.bytes() + materials.bytes();
+      return positions.bytes() + velocities.bytes() + strains.bytes() + densities.bytes() + histories.bytes() + ids.bytes() +
+             materials.bytes();
     }
   };
   KeptFrame make_frame() {
-    return {executor_.template array<Row>(),           executor_.template array<Row>(),
-            executor_.template array<float>(),         executor_.template array<float>(),
-            executor_.template array<std::uint32_t>(), executor_.template array<std::uint32_t>()};
+    return {executor_.template array<Row>(),          executor_.template array<Row>(),
+            executor_.template array<float>(),        executor_.template array<float>(),
+            executor_.template array<float>(),        executor_.template array<std::uint32_t>(),
+            executor_.template array<std::uint32_t>()};
   }
   KeptFrame kept_{make_frame()}; // where the host asked for it
   ColliderShapes<Executor> shapes_{executor_};
@@ -240,6 +269,7 @@ Solver<Executor>::Solver(const SolverSettings &settings, const ExecutionSettings
       killer_views_(executor_.template array<KillerView>()), collider_views_(executor_.template array<ColliderView>()),
       contacts_(executor_.template array<Contact>()) {
   const auto capacity = static_cast<std::size_t>(settings_.particle_capacity);
+  fluids_.calibration = FluidCalibration::of(kernel_, settings_.kernel_radius);
   spare_row_ = capacity;
   keys_.reserve(capacity);
   order_.reserve(capacity);
@@ -272,6 +302,7 @@ template <class Executor> void Solver<Executor>::reserve_storage(ParticleStorage
   if (settings_.sleep_speed > 0) grow(storage.rests, 1);
   if (histories_in_use_) grow(storage.histories, 1);
   if (drifts_in_use_) grow(storage.drifts, 3);
+  if (displacements_in_use_) grow(storage.displacements, 1);
 }
 
 template <class Executor> void Solver<Executor>::set_materials(const std::vector<SolverMaterial> &materials) {
@@ -280,13 +311,14 @@ template <class Executor> void Solver<Executor>::set_materials(const std::vector
   const bool more = wanted > material_capacity_;
   const int capacity = more ? std::max(wanted, std::min(2 * material_capacity_, 4096)) : material_capacity_;
   const std::size_t rows = spare_row_ + executor_.spare_rows();
-  bool history = histories_in_use_, drift = drifts_in_use_;
+  bool history = histories_in_use_, drift = drifts_in_use_, displacement = displacements_in_use_;
   for (const SolverMaterial &material : materials)
     std::visit(
         [&](const auto &law) {
           using Law = std::remove_cvref_t<decltype(law)>;
           history = history || Law::has_history;
           drift = drift || (settings_.projected_tensor && Law::resists_zero_energy_modes);
+          displacement = displacement || is_fluid<Law>();
         },
         material.law);
   const int fields =
@@ -334,13 +366,29 @@ template <class Executor> void Solver<Executor>::set_materials(const std::vector
     executor_.set(now_.drifts.data(), 3 * count_, 0.0f);
     drifts_in_use_ = true;
   }
+  if (displacement && !displacements_in_use_) {
+    reserve_both(now_.displacements, other_.displacements, rows);
+    executor_.set(now_.displacements.data(), count_, 0.0f);
+    displacements_in_use_ = true;
+  }
   std::vector<float> table;
-  for (const SolverMaterial &material : materials)
-    if (!material.meetings.empty()) table.resize(materials.size() * materials.size(), -1.0f);
+  bool fluid = false;
+  for (const SolverMaterial &material : materials) {
+    fluid = fluid || (material.in_use && std::holds_alternative<Fluid>(material.law));
+    if (!material.meetings.empty() || fluid) table.resize(materials.size() * materials.size(), Meetings::gradients_shared);
+  }
   for (std::size_t m = 0; m < materials.size() && !table.empty(); ++m)
     std::copy(materials[m].meetings.begin(), materials[m].meetings.end(),
               table.begin() + static_cast<std::ptrdiff_t>(m * materials.size()));
+  if (fluid) meet_fluids(materials, table);
   if (!table.empty()) copy_in(meetings_, table);
+  if (!fluid) { // memory may be refused up to here
+    fluids_.walls.free();
+    fluids_.is_fluid.free();
+  }
+  fluids_.in_use = fluid;
+  distance_between_materials_ = std::any_of(materials.begin(), materials.end(),
+                                            [](const SolverMaterial &material) { return !material.meetings.empty(); });
   contact_between_materials_ = !table.empty();
   materials_ = materials;
   schedule_is_current_ = false;
@@ -381,6 +429,7 @@ template <class Executor> void Solver<Executor>::map(loam_particle_view &view) {
   densities_.reserve(static_cast<std::size_t>(settings_.particle_capacity));
   executor_.session([&] {
     executor_.for_each(count_, ComputeDensities{now_.positions.data(), now_.velocities.data(), densities_.data()});
+    measure_fluids(now_.materials.data(), now_.strains.data(), densities_.data());
   });
   view.memory = Executor::memory_kind;
   view.count = particles();
@@ -390,6 +439,7 @@ template <class Executor> void Solver<Executor>::map(loam_particle_view &view) {
   view.materials = now_.materials.data();
   view.strains = now_.strains.data();
   view.densities = densities_.data();
+  view.histories = histories_in_use_ ? now_.histories.data() : nullptr;
 }
 
 template <class Executor> void Solver<Executor>::keep(loam_particle_view &view) {
@@ -404,14 +454,17 @@ template <class Executor> void Solver<Executor>::keep(loam_particle_view &view) 
     frame.materials.reserve(capacity);
     kept_ = std::move(frame);
   }
+  if (histories_in_use_) kept_.histories.reserve(static_cast<std::size_t>(settings_.particle_capacity));
   const auto n = static_cast<std::size_t>(count_);
   executor_.session([&] {
     executor_.copy(kept_.positions.data(), now_.positions.data(), n);
     executor_.copy(kept_.velocities.data(), now_.velocities.data(), n);
     executor_.copy(kept_.strains.data(), now_.strains.data(), 6 * n);
+    if (histories_in_use_) executor_.copy(kept_.histories.data(), now_.histories.data(), n);
     executor_.copy(kept_.ids.data(), now_.ids.data(), n);
     executor_.copy(kept_.materials.data(), now_.materials.data(), n);
     executor_.for_each(count_, ComputeDensities{kept_.positions.data(), kept_.velocities.data(), kept_.densities.data()});
+    measure_fluids(kept_.materials.data(), kept_.strains.data(), kept_.densities.data());
   });
   view.memory = Executor::memory_kind;
   view.count = particles();
@@ -421,6 +474,7 @@ template <class Executor> void Solver<Executor>::keep(loam_particle_view &view) 
   view.materials = kept_.materials.data();
   view.strains = kept_.strains.data();
   view.densities = kept_.densities.data();
+  view.histories = histories_in_use_ ? kept_.histories.data() : nullptr;
 }
 
 template <class Executor> bool Solver<Executor>::drop() {
@@ -452,6 +506,7 @@ template <class Executor> std::vector<MemoryUse> Solver<Executor>::memory() cons
   const std::uint64_t colliders =
       collider_views_.bytes() + contacts_.bytes() + shapes_.bytes() + contact_laws_.bytes() + reactions_.bytes();
   if (colliders > 0) uses.push_back({"colliders", colliders});
+  if (fluids_.bytes() > 0) uses.push_back({"fluids", fluids_.bytes()});
   if (cloth_.bytes() > 0) uses.push_back({"cloth", cloth_.bytes()});
   if (cloth_.self_contact_bytes() > 0) uses.push_back({"cloth self contact", cloth_.self_contact_bytes()});
   if (fields_.bytes() > 0) uses.push_back({"fields", fields_.bytes()});
@@ -466,6 +521,7 @@ template <class Executor> std::vector<MemoryUse> Solver<Executor>::memory() cons
 } // namespace loam
 
 #include "solver/edit.h"
+#include "solver/fluid.h"
 #include "solver/killing.h"
 #include "solver/state.h"
 #include "solver/step.h"

@@ -4,6 +4,8 @@
 #include "kernels/cloth/bending.h"
 #include "kernels/cloth/membrane.h"
 #include "kernels/cloth/threads.h"
+#include "kernels/fluid/prepare_fluid.h"
+#include "kernels/fluid/solve_fluid_at_once.h"
 #include "kernels/inelastic/measure_constraint.h"
 #include "kernels/inelastic/projected_tensor.h"
 #include "kernels/inelastic/scalar_multiplier.h"
@@ -45,11 +47,17 @@ template <class... L> struct StagesOfLaws<TypeList<L...>> {
   using Type = typename Concatenate<typename StagesOfLaw<L>::Type...>::Type;
 };
 
+using FluidStages =
+    TypeList<PrepareFluid, StartFluid<FluidMotion::velocities>, SolveFluid<FluidMotion::velocities>,
+             StartFluid<FluidMotion::displacements>, SolveFluid<FluidMotion::displacements>, FluidImpulse<FluidTurn::start>,
+             FluidImpulse<FluidTurn::velocities>, FluidImpulse<FluidTurn::start_displacements>,
+             FluidImpulse<FluidTurn::displacements>, KeepMultipliers>;
+
 using TeamStages = Concatenate<
     TypeList<ComputeGradients<false>, ComputeGradients<true>, CorrectPositionsInTurn, CorrectPositionsAtOnce,
              SmoothVelocities, LookAround, JacobiApply<false>, JacobiApply<true>>,
     StagesOfForm<Elastic, ProjectedTensor<false>>, // semi-implicit plasticity of matter that resists no zero-energy modes
-    StagesOfLaws<Laws>::Type>::Type;
+    StagesOfLaws<Laws>::Type, FluidStages>::Type;
 using CandidateStages = TypeList<CountNeighbours, FillNeighbours>;
 // Over a cloth's constraints.
 using ConstraintStages = TypeList<PrepareMembrane, SolveMembrane, PrepareHinges, SolveHinges, PrepareThreads, SolveThreads>;

@@ -18,6 +18,7 @@ template <class Executor> std::vector<StateSection> Solver<Executor>::state(std:
   if (drifts_in_use_) add(StateKind::drifts, now_.drifts, 3, 3);
   if (settings_.sleep_speed > 0) add(StateKind::rests, now_.rests, 1, 1, 1);
   if (now_.ages.capacity() > 0) add(StateKind::ages, now_.ages, 1, 1, 1);
+  if (displacements_in_use_) add(StateKind::displacements, now_.displacements, 1, 1, 1);
   add(StateKind::ids, now_.ids, 1, 1);
   add(StateKind::materials, now_.materials, 1, 1, 1);
   return list;

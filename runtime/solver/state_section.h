@@ -20,6 +20,7 @@ enum class StateKind : std::uint32_t {
   ids = 8,
   materials = 9,
   rests = 10,
+  displacements = 11,
   ages = 20,
   cloth_positions = 32,
   cloth_velocities = 33

@@ -62,10 +62,14 @@ template <class Executor> void Solver<Executor>::compile_schedule(const Surround
   SceneContents contents;
   contents.surroundings = surroundings;
   for (const SolverMaterial &material : materials_) contents.materials.push_back({material.name, material.in_use});
-  contents.position_correction = settings_.minimum_distance > 0.0f || contact_between_materials_;
-  contents.velocity_smoothing = settings_.velocity_smoothing > 0.0f;
+  const bool only_fluid = fluids_.in_use && std::none_of(materials_.begin(), materials_.end(), [](const SolverMaterial &m) {
+                            return m.in_use && !std::holds_alternative<Fluid>(m.law);
+                          });
+  contents.position_correction = (settings_.minimum_distance > 0.0f && !only_fluid) || distance_between_materials_;
+  contents.velocity_smoothing = settings_.velocity_smoothing > 0.0f && !only_fluid;
   contents.cloth = cloth;
   contents.cloth_self_contact = self_contact;
+  for (std::size_t m = 0; m < materials_.size(); ++m) contents.materials[m].fluid = is_fluid_material(static_cast<int>(m));
   contents.sleep = settings_.sleep_speed > 0.0f;
   contents.particles =
       std::any_of(materials_.begin(), materials_.end(), [](const SolverMaterial &material) { return material.in_use; });
@@ -119,7 +123,7 @@ template <class Executor> void Solver<Executor>::search_neighbours() {
 
   const float r = settings_.kernel_radius, least = settings_.minimum_distance * r;
   // Pairs that can come too close within the substep; a pair's approach is a fraction of r in any motion that is resolved.
-  const float greatest = contact_between_materials_ ? std::max(least, r) : least;
+  const float greatest = distance_between_materials_ ? std::max(least, r) : least;
   const float close = schedule_.position_correction >= 0 ? greatest + 0.5f * r : 0.0f;
   const CandidateTest test = {4.0f * r * r, close * close, settings_.jacobi};
   table_.particle_count = count_;
@@ -177,13 +181,22 @@ template <class Executor> void Solver<Executor>::search_neighbours() {
                                               record_size_,
                                               meetings};
   };
-  if (!drifts_in_use_)
+  if (!drifts_in_use_ && !fluids_.in_use)
     for_each_particle_meeting([&](const Meetings &meetings) { return gradients(std::false_type(), meetings); });
   else
     for (int m = 0; m < static_cast<int>(materials_.size()); ++m)
       with_law(m, [&](const auto &law, StrainLimit) {
-        constexpr bool non_affine = std::remove_cvref_t<decltype(law)>::resists_zero_energy_modes;
-        ex.for_each_particle_of(m, now_.velocities.data(), gradients(std::bool_constant<non_affine>(), meetings_of(m)));
+        using Law = std::remove_cvref_t<decltype(law)>;
+        if constexpr (!is_fluid<Law>()) {
+          if (!materials_[static_cast<std::size_t>(m)].in_use) return;
+          const auto visit = [&](auto non_affine) {
+            ex.for_each_particle_of(m, now_.velocities.data(), gradients(non_affine, meetings_of(m)));
+          };
+          if (Law::resists_zero_energy_modes && drifts_in_use_)
+            visit(std::bool_constant<Law::resists_zero_energy_modes>());
+          else
+            visit(std::false_type());
+        }
       });
   lap(schedule_.gradients, pairs_);
 }
@@ -216,7 +229,8 @@ template <class Executor> void Solver<Executor>::prepare_contacts(const StepInpu
     executor_.for_each(count_, FindContacts{now_.positions.data(), now_.velocities.data(), collider_views_.data(),
                                             static_cast<int>(views_.size()), h_, stand_off, r, contacts_.data(),
                                             static_cast<int>(contacts_.capacity()), counters_.data() + 2, free_distances,
-                                            now_.materials.data(), rest_speed});
+                                            now_.materials.data(), rest_speed,
+                                            fluids_.in_use ? 1.0f : 0.25f}); // a wall counts in a fluid's density
     contact_count_ = executor_.read(counters_.data() + 2);
     if (static_cast<std::size_t>(contact_count_) <= contacts_.capacity()) break;
     const auto found = static_cast<std::size_t>(contact_count_);

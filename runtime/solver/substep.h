@@ -17,6 +17,7 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
   }
   try {
     prepare_contacts(input, index);
+    if (fluids_.in_use) reserve_fluids();
     if (!cloth_.empty()) {
       cloth_.find_contacts(cloth_substep(input));
       if (schedule_.find_cloth_contacts >= 0) lap(schedule_.find_cloth_contacts, cloth_.vertex_count());
@@ -38,6 +39,11 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
       });
       lap(schedule_.fields, cloth_.vertex_count());
     }
+  }
+
+  if (fluids_.in_use && count_ > 0) {
+    prepare_fluids();
+    start_fluids();
   }
 
   iterate(input);
@@ -66,12 +72,9 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
   // After the contacts, which take back what they gave against what is changed here; before the sweep, for colliders let nothing pass.
   if (schedule_.cloth_particles >= 0) cloth_.sweep_particles(cloth_substep(input));
   if (contact_count_ > 0) {
-    const float margin = 0.05f * 0.5f * settings_.kernel_radius;
-    const int colliders = static_cast<int>(input.colliders.size());
     const Reactions reactions = reactions_.view(now_.positions.data(), collider_views_.data(), last);
     if (reactions_.any()) ex.for_each(contact_count_, AddReactions{contacts_.data(), now_.velocities.data(), reactions});
-    ex.for_each(contact_count_, SweepContacts{contacts_.data(), now_.positions.data(), now_.velocities.data(),
-                                              collider_views_.data(), colliders, h_, margin, reactions});
+    sweep_contacts(reactions);
     lap(schedule_.final_contacts, static_cast<std::uint64_t>(contact_count_));
   }
 
@@ -86,20 +89,24 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
     if (stage < 0 || count_ == 0) continue;
     with_law(m, [&](const auto &law, StrainLimit limit) {
       using Law = std::remove_cvref_t<decltype(law)>;
-      const auto update = [&](auto non_affine) {
-        ex.for_each_particle_of(
-            m, now_.velocities.data(),
-            UpdateStrain<Law, non_affine.value>{law, limit, h_, now_.strains.data(), now_.histories.data(),
-                                                now_.log_volumes.data(), now_.drifts.data(), drift_stiffness(),
-                                                neighbour_counts_.data(), counters_.data() + 1, counters_.data() + 3});
-      };
-      if (settings_.projected_tensor)
-        update(std::bool_constant<Law::resists_zero_energy_modes>());
-      else
-        update(std::false_type());
+      if constexpr (!is_fluid<Law>()) {
+        const auto update = [&](auto non_affine) {
+          ex.for_each_particle_of(
+              m, now_.velocities.data(),
+              UpdateStrain<Law, non_affine.value>{law, limit, h_, now_.strains.data(), now_.histories.data(),
+                                                  now_.log_volumes.data(), now_.drifts.data(), drift_stiffness(),
+                                                  neighbour_counts_.data(), counters_.data() + 1, counters_.data() + 3});
+        };
+        if (settings_.projected_tensor)
+          update(std::bool_constant<Law::resists_zero_energy_modes>());
+        else
+          update(std::false_type());
+      }
     });
     lap(stage, particles());
   }
+  const bool displaced = fluids_.in_use && count_ > 0;
+  if (displaced) displace_fluids(input);
   if (now_.free_distances.capacity() > 0) {
     ex.for_each(count_, SpendFreeDistances{now_.free_distances.data(), now_.positions.data(), now_.velocities.data(), h_,
                                            collider_motion_.greatest()});
@@ -108,6 +115,7 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
   }
   ex.for_each(count_,
               Advance{now_.positions.data(), now_.velocities.data(), now_.log_volumes.data(), now_.rest_volumes.data(), h_});
+  if (displaced) finish_displacements();
   lap(schedule_.advance, particles());
   if (!cloth_.empty()) {
     cloth_.advance(cloth_substep(input));
@@ -115,6 +123,13 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
     lap(schedule_.finish_cloth, cloth_.vertex_count());
   }
   if (schedule_.sleep >= 0 && count_ > 0) fall_asleep();
+}
+
+template <class Executor> void Solver<Executor>::sweep_contacts(const Reactions &reactions) {
+  const float margin = 0.05f * 0.5f * settings_.kernel_radius;
+  executor_.for_each(contact_count_,
+                     SweepContacts{contacts_.data(), now_.positions.data(), now_.velocities.data(), collider_views_.data(),
+                                   static_cast<int>(views_.size()), h_, margin, reactions});
 }
 
 template <class Executor> typename Solver<Executor>::ClothSubstep Solver<Executor>::cloth_substep(const StepInput &input) {
@@ -167,22 +182,26 @@ template <class Executor> void Solver<Executor>::iterate(const StepInput &input)
 template <class Executor> template <class F> void Solver<Executor>::with_constraint(int material, F &&f) {
   with_law(material, [&](const auto &law, StrainLimit limit) {
     using Law = std::remove_cvref_t<decltype(law)>;
-    const auto with_form = [&](const auto &multiplier) {
-      if (settings_.semi_implicit)
-        f(Elastic{{law.lame}}, limit, multiplier);
+    if constexpr (!is_fluid<Law>()) {
+      const auto with_form = [&](const auto &multiplier) {
+        if (settings_.semi_implicit)
+          f(Elastic{{law.lame}}, limit, multiplier);
+        else
+          f(law, limit, multiplier);
+      };
+      if (settings_.projected_tensor)
+        with_form(TensorOf<Law>{drift_stiffness()});
       else
-        f(law, limit, multiplier);
-    };
-    if (settings_.projected_tensor)
-      with_form(TensorOf<Law>{drift_stiffness()});
-    else
-      with_form(ScalarMultiplier());
+        with_form(ScalarMultiplier());
+    }
   });
 }
 
 template <class Executor> void Solver<Executor>::solve_in_turn() {
   for (int pass = 0; pass < executor_.pass_count(); ++pass) {
     const int m = executor_.pass_material(pass);
+    if (is_fluid_material(m))
+      executor_.for_each_block(pass, now_.velocities.data(), SolveFluid<FluidMotion::velocities>{{h_, 1.0f}});
     with_constraint(m, [&](const auto &law, StrainLimit limit, const auto &multiplier) {
       using Stage = SolveInelastic<std::remove_cvref_t<decltype(law)>, std::remove_cvref_t<decltype(multiplier)>>;
       executor_.for_each_block(pass, now_.velocities.data(), Stage{law, limit, h_, multiplier});
@@ -192,13 +211,10 @@ template <class Executor> void Solver<Executor>::solve_in_turn() {
 }
 
 template <class Executor> void Solver<Executor>::solve_at_once() {
-  JacobiRows rows = {};
-  for (int j = 0; j < 3; ++j) {
-    rows.column[j] = jacobi_rows_[j].data();
-    if (drifts_in_use_) rows.along_drift[j] = jacobi_drift_rows_[j].data();
-  }
+  const JacobiRows rows = jacobi_rows();
   Row *velocities = now_.velocities.data();
   int stage = schedule_.gradients;
+  if (fluids_.in_use) solve_fluids_at_once<FluidTurn::velocities>(rows);
   for (int m = 0; m < static_cast<int>(materials_.size()); ++m) {
     if (schedule_.solve[static_cast<std::size_t>(m)] < 0) continue;
     stage = schedule_.solve[static_cast<std::size_t>(m)];
@@ -208,17 +224,32 @@ template <class Executor> void Solver<Executor>::solve_at_once() {
     });
     lap(stage, particles());
   }
-  // Every particle writes its own velocity and reads none but its own: the impulses are in the rows.
+  apply_at_once(rows);
+  lap(stage, particles());
+}
+
+template <class Executor> JacobiRows Solver<Executor>::jacobi_rows() {
+  JacobiRows rows = {};
+  for (int j = 0; j < 3; ++j) {
+    rows.column[j] = jacobi_rows_[j].data();
+    if (drifts_in_use_) rows.along_drift[j] = jacobi_drift_rows_[j].data();
+  }
+  return rows;
+}
+
+// Every particle writes its own velocity and reads none but its own: the impulses are in the rows.
+template <class Executor> void Solver<Executor>::apply_at_once(const JacobiRows &rows) {
   const auto apply = [&](auto non_affine) {
-    for_each_particle_meeting([&](const Meetings &meetings) {
-      return JacobiApply<non_affine.value>{rows, now_.positions.data(), kernel_, meetings};
-    });
+    for_each_particle_meeting(
+        [&](const Meetings &meetings) {
+          return JacobiApply<non_affine.value>{rows, now_.positions.data(), kernel_, meetings};
+        },
+        reach);
   };
   if (drifts_in_use_)
     apply(std::true_type());
   else
     apply(std::false_type());
-  lap(stage, particles());
 }
 
 template <class Executor> void Solver<Executor>::correct_positions() {

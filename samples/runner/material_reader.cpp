@@ -15,7 +15,8 @@ const std::vector<std::pair<std::string_view, std::uint32_t>> laws = {{"elastic"
                                                                       {"drucker_prager", LOAM_LAW_DRUCKER_PRAGER},
                                                                       {"nacc", LOAM_LAW_NACC},
                                                                       {"herschel_bulkley", LOAM_LAW_HERSCHEL_BULKLEY},
-                                                                      {"stomakhin_snow", LOAM_LAW_STOMAKHIN_SNOW}};
+                                                                      {"stomakhin_snow", LOAM_LAW_STOMAKHIN_SNOW},
+                                                                      {"fluid", LOAM_LAW_FLUID}};
 const std::vector<std::pair<std::string_view, Look>> looks = {
     {"grains", Look::grains}, {"smooth", Look::smooth}, {"glossy", Look::glossy}};
 
@@ -30,7 +31,7 @@ public:
     read_origin();
     read_name();
     table_.read("density", def_.density);
-    read_stiffness();
+    if (def_.law != LOAM_LAW_FLUID) read_stiffness();
     switch (def_.law) {
     case LOAM_LAW_VON_MISES:
       read_yield_stress();

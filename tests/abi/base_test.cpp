@@ -148,7 +148,7 @@ TEST(Base, DefaultFunctionsRefuseNullAndUnknownSizesAndWriteNothing) {
   check(loam_material_def{},
         [](loam_material_def *def, std::size_t size) { return loam_material_def_default(LOAM_LAW_ELASTIC, def, size); });
   loam_material_def def;
-  for (const std::uint32_t law : {6u, 0xffffffffu}) {
+  for (const std::uint32_t law : {7u, 0xffffffffu}) {
     EXPECT_EQ(loam_material_def_default(law, &def, sizeof def), LOAM_ERROR_INVALID_ARGUMENT);
     test::expect_error_names({"law", std::to_string(law)});
   }

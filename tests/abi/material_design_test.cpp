@@ -30,7 +30,7 @@ TEST_F(Presets, EveryNameGivesAMaterialThatAWorldTakes) {
     names.insert(name);
   }
   EXPECT_EQ(names, (std::set<std::string>{"dry sand", "wet sand", "packed snow", "powder snow", "plasticine", "aluminium",
-                                          "candy", "shaving foam", "paint", "toothpaste", "dough", "mud"}));
+                                          "candy", "shaving foam", "paint", "toothpaste", "dough", "mud", "water"}));
   EXPECT_EQ(loam_material_preset_name(std::uint32_t(names.size())), nullptr);
   EXPECT_EQ(loam_material_preset_name(~0u), nullptr);
 }

@@ -94,7 +94,7 @@ TEST_F(Materials, EveryNumberHasItsRange) {
       EXPECT_EQ(accepts(def), "LOAM_OK") << field.name << " " << value;
     }
   }
-  for (const std::uint32_t law : {6u, ~0u}) {
+  for (const std::uint32_t law : {7u, ~0u}) {
     loam_material_def def = of_law(LOAM_LAW_ELASTIC);
     def.law = law;
     refuses(def, {"law", std::to_string(law)});

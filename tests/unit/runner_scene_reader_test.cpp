@@ -232,6 +232,9 @@ TEST(RunnerSceneReader, RefusesUnknownPresetsAndNumbersOfOtherLaws) {
   expect_mentions(scene_error(of_material("preset = \"candy\"\nlaw = \"nacc\"\n")), {"scene.toml:7:", "materials[0].law"});
   expect_mentions(scene_error(of_material("preset = \"candy\"\nyield_stress = 3\n")),
                   {"scene.toml:7:", "yield_stress", "unknown key", "cohesion_ratio"});
+  EXPECT_EQ(material_of("law = \"fluid\"\ndensity = 900\n").density, 900.0f);
+  expect_mentions(scene_error(of_material("preset = \"water\"\nyoungs_modulus = 1e6\n")),
+                  {"scene.toml:7:", "youngs_modulus", "unknown key", "density"});
 }
 
 TEST(RunnerSceneReader, FindsNumbersFromWhatADesignerKnows) {

@@ -78,8 +78,9 @@ struct FindContacts {
   int *count; // zero before; counts on past the capacity, for the host to make room and run again
   FreeDistances free_distances = {nullptr, 0.0f};
   const std::uint32_t *materials =
-      nullptr;             // of the particles; read where a collider has laws of its own for some. Null: of none
-  float rest_speed = 0.0f; // see ContactParticle
+      nullptr;              // of the particles; read where a collider has laws of its own for some. Null: of none
+  float rest_speed = 0.0f;  // see ContactParticle
+  float near_share = 0.25f; // of the reach, within which every plane is collected
 
   LOAM_FN void operator()(int particle) const {
     if (free_distances.suffices(particle)) return;
@@ -120,7 +121,7 @@ private:
   // Planes are collected as far as the particle is likely to go in the substep, given its speed; how far the collider is at all is found
   // out to the full reach, and a particle that goes further than expected is the sweep's.
   LOAM_FN float expected_reach(int particle) const {
-    return minimum(reach, 2.0f * substep * length(xyz(velocities[particle])) + 0.25f * reach);
+    return minimum(reach, 2.0f * substep * length(xyz(velocities[particle])) + near_share * reach);
   }
 
   // Of a particle in a collider's frame.

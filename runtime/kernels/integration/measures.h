@@ -147,6 +147,7 @@ struct StateHash {
     h = mix(h, particles.histories != nullptr ? bits(particles.histories[i]) : 0);
     for (int k = 0; k < 3; ++k)
       h = mix(h, particles.drifts != nullptr ? bits(particles.drifts[3 * static_cast<long>(i) + k]) : 0);
+    h = mix(h, particles.displacements != nullptr ? bits(particles.displacements[i]) : 0);
     h = mix(h, bits(particles.log_volumes[i]));
     h = mix(h, bits(particles.rest_volumes[i]));
     if (particles.rests != nullptr) h = mix(h, bits(particles.rests[i]));

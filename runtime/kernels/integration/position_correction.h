@@ -26,9 +26,10 @@ struct CorrectPositions {
   Vec3<float> up;
   Meetings meetings;
 
-  // The distance that a pair keeps; `friction` is negative where gradients are shared.
+  // The distance that a pair keeps; `friction` as in Meetings.
   template <class T> LOAM_FN T kept_distance(T friction) const {
-    return select(friction < T(0.0f), T(least_distance), T(contact_distance));
+    const T kept = select(friction < T(0.0f), T(least_distance), T(contact_distance));
+    return select(friction < T(-1.5f), T(0.0f), kept);
   }
 
   // Most pairs are far enough apart: then there is nothing to do, and nothing to write.

@@ -3,6 +3,7 @@
 
 #include "kernels/materials/drucker_prager.h"
 #include "kernels/materials/elastic.h"
+#include "kernels/materials/fluid.h"
 #include "kernels/materials/herschel_bulkley.h"
 #include "kernels/materials/nacc.h"
 #include "kernels/materials/stomakhin_snow.h"

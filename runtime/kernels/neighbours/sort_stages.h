@@ -19,9 +19,10 @@ struct ParticleArrays {
   float *rest_volumes; // V0
   std::uint32_t *ids;
   std::uint32_t *materials;
-  float *free_distances; // see kernels/contact/free_distance.h; no part of the state
-  float *rests;          // see kernels/integration/sleep.h; null where nothing may sleep
-  float *ages = nullptr; // s; while something asks
+  float *free_distances;          // see kernels/contact/free_distance.h; no part of the state
+  float *rests;                   // see kernels/integration/sleep.h; null where nothing may sleep
+  float *ages = nullptr;          // s; while something asks
+  float *displacements = nullptr; // multipliers, see kernels/fluid/density_constraint.h; while there is fluid
 };
 
 LOAM_FN void move_particle(const ParticleArrays &from, long j, const ParticleArrays &to, long i) {
@@ -38,6 +39,7 @@ LOAM_FN void move_particle(const ParticleArrays &from, long j, const ParticleArr
   if (to.free_distances != nullptr) to.free_distances[i] = from.free_distances[j];
   if (to.rests != nullptr) to.rests[i] = from.rests[j];
   if (to.ages != nullptr) to.ages[i] = from.ages[j];
+  if (to.displacements != nullptr) to.displacements[i] = from.displacements[j];
 }
 
 struct AssignCells {

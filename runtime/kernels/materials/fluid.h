@@ -1,0 +1,22 @@
+// A fluid as a material: what the stages of kernels/fluid know of it. It has no strain; its particles' memory is their pressure.
+#pragma once
+
+#include "kernels/materials/law.h"
+
+namespace loam {
+
+struct Fluid : Isotropic {
+  static constexpr bool is_fluid = true;
+  static constexpr bool has_history = true; // the pressure in Pa, from which the next substep starts
+  static constexpr bool resists_zero_energy_modes = false;
+  static constexpr double greatest_strain = 1.0;
+};
+
+template <class Law> constexpr bool is_fluid() {
+  if constexpr (requires { Law::is_fluid; })
+    return Law::is_fluid;
+  else
+    return false;
+}
+
+} // namespace loam
