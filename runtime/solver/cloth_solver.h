@@ -607,8 +607,10 @@ template <class Executor> void ClothSolver<Executor>::finish(const Substep &s, i
   for_each_cloth([&](Cloth &cloth) {
     Row *velocities = cloth.velocities.data();
     const float fastest = cloth.reach / s.seconds;
-    if (s.particles.count > 0) // once more: smoothing and the speed limit have changed the particles
+    if (s.particles.count > 0) { // once more: smoothing and the speed limit have changed the particles
+      executor_.for_each(cloth.vertex_count, LimitSpeed{velocities, fastest, speed_limited}); // none hits them faster
       for (int pass = 0; pass < 2; ++pass) cloth.particle_contact.solve(executor_, cloth.sheet(), s.particles, s.seconds);
+    }
     executor_.for_each(cloth.vertex_count, LimitSpeed{velocities, fastest, speed_limited});
     if (s.particles.count > 0) cloth.particle_contact.keep_off(executor_, cloth.sheet(), s.particles, s.seconds);
     executor_.for_each(cloth.contact_count,

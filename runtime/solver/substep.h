@@ -63,6 +63,9 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
   lap(schedule_.speed_limit, particles());
   if (!cloth_.empty()) {
     cloth_.finish(cloth_substep(input), counters_.data(), reactions_.view(nullptr, collider_views_.data(), last));
+    // Light particles between heavy cloths may have been thrown.
+    if (schedule_.cloth_particles >= 0)
+      ex.for_each(count_, LimitSpeed{now_.velocities.data(), settings_.kernel_radius / h_, counters_.data()});
     lap(schedule_.finish_cloth, cloth_.vertex_count());
   }
   if (contact_count_ > 0)
