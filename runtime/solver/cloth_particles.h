@@ -76,6 +76,8 @@ public:
     ex.set(changes_.data(), 3 * sheet.vertex_count, 0);
   }
 
+  void forget() { count_ = 0; }
+
   // In the iterations: both give way.
   void solve(Executor &ex, const Sheet &sheet, const ClothParticles &particles, float substep) {
     pass(ex, sheet, particles, {substep, -1.0f});

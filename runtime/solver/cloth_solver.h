@@ -544,7 +544,10 @@ template <class Executor> void ClothSolver<Executor>::find_contacts(const Subste
                   s.seconds * (4.0f * greatest + 4.0f * s.seconds * length(s.gravity) + 2.0f * length(cloth.wind.velocity));
     if (s.particles.count > 0) cloth.reach += s.particles.radius; // what hits it may be that fast
     cloth.contact_count = 0;
-    if (s.particles.count > 0) cloth.particle_contact.find(executor_, cloth.sheet(), particles, s.seconds);
+    if (s.particles.count > 0)
+      cloth.particle_contact.find(executor_, cloth.sheet(), particles, s.seconds);
+    else
+      cloth.particle_contact.forget(); // those who are gone push no more
     if (s.collider_count == 0) return;
     for (int attempt = 0; attempt < 2; ++attempt) {
       executor_.set(cloth.contact_counter.data(), 1, 0);
