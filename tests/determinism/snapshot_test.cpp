@@ -1,6 +1,5 @@
 /* A world that goes on from a snapshot has the same bits as one that was never stopped. */
 #include <gtest/gtest.h>
-#include <numeric>
 
 #include "support/cloths.h"
 #include "support/hooks.h"
@@ -205,36 +204,6 @@ TEST(SnapshotOfCloth, GoesOnWithTheSameBits) {
 }
 
 /* A sheet that collides with itself is torn apart; back to when it was half torn, and to when it was whole, in this world and in another. */
-/* Particles that touched the cloth and were removed push it no more, not even by what an iteration left behind. */
-TEST(SnapshotOfCloth, ForgetsContactWithParticlesThatAreGone) {
-  scenes::Scene block = scenes::jittered_block(scenes::sand(), 200);
-  block.planes.clear();
-  float lowest = 1;
-  for (std::size_t i = 1; i < block.positions.size(); i += 3) lowest = std::min(lowest, block.positions[i]);
-  loam_world_def def = scenes::world_def(block);
-  def.substeps = 4;
-  scenes::World world(def, block);
-  const cloths::Grid grid(40, 40, 0.01f);
-  loam_cloth_def cloth_def = cloths::definition(grid);
-  cloth_def.position[1] = lowest - 0.006f;
-  const cloths::Cloth cloth(world.get(), cloth_def);
-  cloth.attach({grid.at(0, 0), grid.at(40, 0), grid.at(0, 40), grid.at(40, 40)}, {}, 0);
-  for (int frame = 0; frame < 10; ++frame) world.step(1.0f / 120);
-  std::uint64_t contacts = 0;
-  for (const loam_stage &stage : world.stages())
-    if (std::string(stage.name) == "cloth and particles") contacts = stage.items;
-  ASSERT_GT(contacts, 0u);
-  std::vector<std::uint32_t> ids(block.count());
-  std::iota(ids.begin(), ids.end(), 0u);
-  scenes::require(loam_particles_remove(world.get(), ids.data(), ids.size()), "loam_particles_remove");
-  const snapshots::Bytes saved = snapshots::save(world.get());
-  world.step(1.0f / 120);
-  const std::uint64_t expected = world.state_hash();
-  snapshots::restore(world.get(), saved);
-  world.step(1.0f / 120);
-  EXPECT_EQ(world.state_hash(), expected);
-}
-
 TEST(SnapshotOfCloth, KnowsHowItIsTorn) {
   const cloths::Grid grid(12, 12, 0.02f, true);
   loam_cloth_def cloth_def = cloths::definition(grid);
