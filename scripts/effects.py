@@ -1,13 +1,15 @@
 #!/usr/bin/python3
 """Measures what each effect costs in a scene, and writes the tables of docs/effects.md and its plot.
 
-    effects.py [--build DIR] [--json FILE] [--keep FILE]
+    effects.py [--build DIR] [--lean DIR] [--json FILE] [--keep FILE]
 
-Runs loam-effects of the build (default build/release), or reads what a run of it wrote (--keep says where to).
+Runs loam-effects of the build (default build/release), or reads what a run of it wrote (--keep says where to). Then runs its sand once more with
+the library of --lean (default build/lean; preset lean), which has nothing but sand, in turns with the whole one.
 """
 
 import argparse
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -40,6 +42,33 @@ def run(build):
     if done.returncode != 0:
         sys.exit(f"error: {program} ended with {done.returncode}")
     return json.loads(done.stdout)
+
+
+def sand_with(build, library):
+    program = build / "benchmarks" / "loam-effects"
+    environment = dict(os.environ, LD_PRELOAD=str(library))
+    done = subprocess.run([program, "--only", "sand alone", "--pile", "0", "--particles", "65536"], cwd=ROOT, env=environment,
+                          stdout=subprocess.PIPE, check=True, text=True)
+    return json.loads(done.stdout)["sand"]
+
+
+def compare_with_lean(build, lean, rounds=7):
+    """The same sand with both libraries in turns: the fastest step of each, and its memory."""
+    libraries = {"whole": build / "runtime" / "libloam.so", "lean": lean / "runtime" / "libloam.so"}
+    runs = {name: [] for name in libraries}
+    for number in range(rounds):
+        for name in sorted(libraries, reverse=number % 2 == 0):
+            runs[name].append(sand_with(build, libraries[name]))
+    return {name: {"seconds": min(run["seconds"] for run in of), "bytes": sum(of[0]["memory"].values()),
+                   "library": libraries[name].stat().st_size} for name, of in runs.items()}
+
+
+def lean_text(both):
+    whole, lean = both["whole"], both["lean"]
+    return (f"The sand, 65536 particles, with the whole library and with one that was built for sand alone (`cmake --preset lean`: no other law, "
+            f"no cloth), in turns: a step takes {1e3 * whole['seconds']:.2f} ms and {1e3 * lean['seconds']:.2f} ms, a ratio of "
+            f"{whole['seconds'] / lean['seconds']:.3f}; the world takes {whole['bytes']} and {lean['bytes']} bytes. The libraries, the whole one with its CUDA backend if it has one, have "
+            f"{whole['library'] / 1e6:.1f} and {lean['library'] / 1e6:.1f} MB.")
 
 
 def nanoseconds(state, results):
@@ -108,12 +137,16 @@ def plot(results):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build" / "release")
+    parser.add_argument("--lean", type=pathlib.Path, default=ROOT / "build" / "lean")
     parser.add_argument("--json", type=pathlib.Path)
     parser.add_argument("--keep", type=pathlib.Path)
     arguments = parser.parse_args()
     results = json.loads(arguments.json.read_text()) if arguments.json else run(arguments.build.resolve())
     if arguments.keep:
         arguments.keep.write_text(json.dumps(results, indent=1))
+    build, lean = arguments.build.resolve(), arguments.lean.resolve()
+    if not (lean / "runtime" / "libloam.so").exists():
+        sys.exit(f"error: no library in {lean}: cmake --preset lean && cmake --build --preset lean")
     options = results["options"]
     parts = {
         "machine": f"{processor()}, {options['threads']} thread; {options['particles']} particles, {options['substeps']} substeps of {1e3 * options['substep_seconds']:g} ms a step, "
@@ -121,6 +154,7 @@ def main():
         "sand": sand_table(results),
         "effects": effects_table(results),
         "sleep": sleep_text(results),
+        "lean": lean_text(compare_with_lean(build, lean)),
     }
     document = DOCUMENT.read_text()
     for name, text in parts.items():

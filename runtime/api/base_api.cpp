@@ -40,6 +40,8 @@ const char *loam_status_name(loam_status status) {
     return "LOAM_ERROR_SNAPSHOT_MISMATCH";
   case LOAM_ERROR_BUSY:
     return "LOAM_ERROR_BUSY";
+  case LOAM_ERROR_NOT_BUILT:
+    return "LOAM_ERROR_NOT_BUILT";
   default:
     return "LOAM_ERROR_UNKNOWN";
   }

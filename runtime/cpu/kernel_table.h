@@ -16,7 +16,8 @@ struct KernelTable {
   TeamLaunch team[Length<TeamStages>::value];
   SearchLaunch search;
   InterleaveLaunch interleave;
-  ConstraintLaunch constraint[Length<ConstraintStages>::value];
+  static constexpr int constraint_stages = Length<ConstraintStages>::value;
+  ConstraintLaunch constraint[constraint_stages > 0 ? constraint_stages : 1];
 };
 
 // Null where the instruction set is not part of this build or not of this machine. `instruction_set` is a LOAM_INSTRUCTION_SET_* other than

@@ -22,12 +22,20 @@ Moduli moduli_of(const loam_material_def &def) {
 
 LameParameters lame_of(const Moduli &m) { return {static_cast<float>(m.mu), static_cast<float>(m.lambda)}; }
 
+template <class Law> LawVariant built(std::uint32_t number, const Law &law) {
+  if constexpr (IsBuilt<Law>::value)
+    return law;
+  else
+    throw Error(LOAM_ERROR_NOT_BUILT, format("law is %u, which is left out of this build of the library", number));
+}
+
 LawVariant make_von_mises(const loam_material_def &def, const Moduli &m) {
   const double in_strain = std::sqrt(2.0 / 3.0) / (2 * m.mu);
   const auto at_yield = static_cast<float>(in_strain * static_cast<double>(def.yield_stress));
-  if (def.hardening_modulus == 0.0f) return VonMises{{lame_of(m)}, at_yield};
-  return VonMisesHardening{
-      {lame_of(m)}, at_yield, static_cast<float>(in_strain * static_cast<double>(def.hardening_modulus))};
+  if (def.hardening_modulus == 0.0f) return built(def.law, VonMises{{lame_of(m)}, at_yield});
+  return built(
+      def.law,
+      VonMisesHardening{{lame_of(m)}, at_yield, static_cast<float>(in_strain * static_cast<double>(def.hardening_modulus))});
 }
 
 DruckerPrager make_drucker_prager(const loam_material_def &def, const Moduli &m) {
@@ -163,6 +171,7 @@ void check_material(const loam_material_def &def) {
   check_plasticity(def);
   if (std::memchr(def.name, 0, sizeof def.name) == nullptr)
     throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("name is not terminated within its %zu bytes", sizeof def.name));
+  static_cast<void>(make_law(def)); // refuses laws that are left out
 }
 
 double stiffness_share(const loam_material_def &def, double kernel_radius, double substep, std::uint32_t iterations) {
@@ -184,15 +193,15 @@ LawVariant make_law(const loam_material_def &given, double stiffness_share) {
   case LOAM_LAW_VON_MISES:
     return make_von_mises(def, m);
   case LOAM_LAW_NACC:
-    return make_nacc(def, m);
+    return built(def.law, make_nacc(def, m));
   case LOAM_LAW_HERSCHEL_BULKLEY:
-    return make_herschel_bulkley(def, m);
+    return built(def.law, make_herschel_bulkley(def, m));
   case LOAM_LAW_FLUID:
-    return Fluid{{{0, 0}}};
+    return built(def.law, Fluid{{{0, 0}}});
   case LOAM_LAW_STOMAKHIN_SNOW:
-    return make_stomakhin_snow(def, m);
+    return built(def.law, make_stomakhin_snow(def, m));
   default:
-    return make_drucker_prager(def, m);
+    return built(def.law, make_drucker_prager(def, m));
   }
 }
 

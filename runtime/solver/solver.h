@@ -18,7 +18,11 @@
 #include "scene/error.h"
 #include "scene/pose.h"
 #include "solver/backend.h"
+#ifdef LOAM_WITHOUT_CLOTH
+#include "solver/no_cloth.h"
+#else
 #include "solver/cloth_solver.h"
+#endif
 #include "solver/collider_motion.h"
 #include "solver/collider_reactions.h"
 #include "solver/collider_shapes.h"
@@ -125,7 +129,12 @@ private:
   void fall_asleep();
   void prepare_contacts(const StepInput &input, std::uint32_t index);
   void prepare_free_distances();
-  using ClothSubstep = typename ClothSolver<Executor>::Substep;
+#ifdef LOAM_WITHOUT_CLOTH
+  using Cloths = NoCloth<Executor>;
+#else
+  using Cloths = ClothSolver<Executor>;
+#endif
+  using ClothSubstep = typename Cloths::Substep;
   ClothSubstep cloth_substep(const StepInput &input);
   void iterate(const StepInput &input);
   void solve_in_turn();
@@ -186,7 +195,7 @@ private:
   Executor executor_;
   SmoothingKernel kernel_;
   Schedule schedule_;
-  ClothSolver<Executor> cloth_{executor_, static_cast<std::size_t>(settings_.particle_capacity)};
+  Cloths cloth_{executor_, static_cast<std::size_t>(settings_.particle_capacity)};
   bool schedule_is_current_ = false, schedule_has_cloth_ = false;
   Surroundings scheduled_; // what the schedule was made for
   std::vector<SolverMaterial> materials_;

@@ -21,12 +21,6 @@
 
 namespace loam {
 
-template <class... Lists> struct Concatenate;
-template <class... A> struct Concatenate<TypeList<A...>> { using Type = TypeList<A...>; };
-template <class... A, class... B, class... Rest> struct Concatenate<TypeList<A...>, TypeList<B...>, Rest...> {
-  using Type = typename Concatenate<TypeList<A..., B...>, Rest...>::Type;
-};
-
 template <class Law, class Multiplier>
 using StagesOfForm =
     TypeList<SolveInelastic<Law, Multiplier>, JacobiImpulse<Law, Multiplier>, MeasureConstraint<Law, Multiplier>>;
@@ -47,11 +41,15 @@ template <class... L> struct StagesOfLaws<TypeList<L...>> {
   using Type = typename Concatenate<typename StagesOfLaw<L>::Type...>::Type;
 };
 
+#ifdef LOAM_WITHOUT_FLUID
+using FluidStages = TypeList<>;
+#else
 using FluidStages =
     TypeList<PrepareFluid, StartFluid<FluidMotion::velocities>, SolveFluid<FluidMotion::velocities>,
              StartFluid<FluidMotion::displacements>, SolveFluid<FluidMotion::displacements>, FluidImpulse<FluidTurn::start>,
              FluidImpulse<FluidTurn::velocities>, FluidImpulse<FluidTurn::start_displacements>,
              FluidImpulse<FluidTurn::displacements>, KeepMultipliers>;
+#endif
 
 using TeamStages = Concatenate<
     TypeList<ComputeGradients<false>, ComputeGradients<true>, CorrectPositionsInTurn, CorrectPositionsAtOnce,
@@ -60,14 +58,10 @@ using TeamStages = Concatenate<
     StagesOfLaws<Laws>::Type, FluidStages>::Type;
 using CandidateStages = TypeList<CountNeighbours, FillNeighbours>;
 // Over a cloth's constraints.
+#ifdef LOAM_WITHOUT_CLOTH
+using ConstraintStages = TypeList<>;
+#else
 using ConstraintStages = TypeList<PrepareMembrane, SolveMembrane, PrepareHinges, SolveHinges, PrepareThreads, SolveThreads>;
-
-template <class Stage, class List> struct IndexOf;
-template <class Stage, class... Rest> struct IndexOf<Stage, TypeList<Stage, Rest...>> { static constexpr int value = 0; };
-template <class Stage, class First, class... Rest> struct IndexOf<Stage, TypeList<First, Rest...>> {
-  static constexpr int value = 1 + IndexOf<Stage, TypeList<Rest...>>::value;
-};
-template <class List> struct Length;
-template <class... Types> struct Length<TypeList<Types...>> { static constexpr int value = sizeof...(Types); };
+#endif
 
 } // namespace loam

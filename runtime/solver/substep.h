@@ -41,9 +41,11 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
     }
   }
 
-  if (fluids_.in_use && count_ > 0) {
-    prepare_fluids();
-    start_fluids();
+  if constexpr (fluid_is_built) {
+    if (fluids_.in_use && count_ > 0) {
+      prepare_fluids();
+      start_fluids();
+    }
   }
 
   iterate(input);
@@ -109,7 +111,9 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
     lap(stage, particles());
   }
   const bool displaced = fluids_.in_use && count_ > 0;
-  if (displaced) displace_fluids(input);
+  if constexpr (fluid_is_built) {
+    if (displaced) displace_fluids(input);
+  }
   if (now_.free_distances.capacity() > 0) {
     ex.for_each(count_, SpendFreeDistances{now_.free_distances.data(), now_.positions.data(), now_.velocities.data(), h_,
                                            collider_motion_.greatest()});
@@ -203,8 +207,10 @@ template <class Executor> template <class F> void Solver<Executor>::with_constra
 template <class Executor> void Solver<Executor>::solve_in_turn() {
   for (int pass = 0; pass < executor_.pass_count(); ++pass) {
     const int m = executor_.pass_material(pass);
-    if (is_fluid_material(m))
-      executor_.for_each_block(pass, now_.velocities.data(), SolveFluid<FluidMotion::velocities>{{h_, 1.0f}});
+    if constexpr (fluid_is_built) {
+      if (is_fluid_material(m))
+        executor_.for_each_block(pass, now_.velocities.data(), SolveFluid<FluidMotion::velocities>{{h_, 1.0f}});
+    }
     with_constraint(m, [&](const auto &law, StrainLimit limit, const auto &multiplier) {
       using Stage = SolveInelastic<std::remove_cvref_t<decltype(law)>, std::remove_cvref_t<decltype(multiplier)>>;
       executor_.for_each_block(pass, now_.velocities.data(), Stage{law, limit, h_, multiplier});
@@ -217,7 +223,9 @@ template <class Executor> void Solver<Executor>::solve_at_once() {
   const JacobiRows rows = jacobi_rows();
   Row *velocities = now_.velocities.data();
   int stage = schedule_.gradients;
-  if (fluids_.in_use) solve_fluids_at_once<FluidTurn::velocities>(rows);
+  if constexpr (fluid_is_built) {
+    if (fluids_.in_use) solve_fluids_at_once<FluidTurn::velocities>(rows);
+  }
   for (int m = 0; m < static_cast<int>(materials_.size()); ++m) {
     if (schedule_.solve[static_cast<std::size_t>(m)] < 0) continue;
     stage = schedule_.solve[static_cast<std::size_t>(m)];
