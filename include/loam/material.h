@@ -83,8 +83,8 @@ typedef struct loam_material_def {
    * under 2; from about 3 on it packs, by a quarter at 4, and simmers.
    *
    * `density` is that of a cubic lattice of the constant r: a fill of any sampling has it on average, and comes to rest with it. Walls count as more fluid, so
-   * that particles do not crowd along them. Particles of other materials count with their volume, and are pushed back with the opposite impulse: light matter
-   * swims, heaps are washed away, heavy matter sinks. A fluid stays out of the deformation of others, and how they meet cannot be chosen.
+   * that particles do not crowd along them. Particles of other materials count with their volume, and are pushed back with the opposite impulse.
+   * A fluid stays out of the deformation of others, and how they meet cannot be chosen.
    *
    * The friction of a collider acts on fluids too; 0 lets them slip. */
 } loam_material_def;

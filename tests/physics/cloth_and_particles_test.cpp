@@ -1,5 +1,7 @@
 /* Cloth and particles: momentum goes both ways, nothing passes. */
 #include <gtest/gtest.h>
+#include <numeric>
+#include <string>
 
 #include "support/cloths.h"
 #include "support/meshes.h"
@@ -176,6 +178,52 @@ TEST(ClothAndParticles, AHeldSheetCarriesSand) {
     on_it += over ? 1 : 0;
   }
   EXPECT_GT(static_cast<double>(on_it), 0.97 * static_cast<double>(sand.count()));
+}
+
+/* Particles that touched a sheet and were removed push it no more, though more of their kind are yet to come: it falls freely from there. */
+TEST(ClothAndParticles, WhoIsGonePushesNoMore) {
+  scenes::Scene block = scenes::jittered_block(scenes::sand(), 200);
+  block.planes.clear();
+  float lowest = 1;
+  for (std::size_t i = 1; i < block.positions.size(); i += 3) lowest = std::min(lowest, block.positions[i]);
+  loam_world_def def = scenes::world_def(block);
+  def.substeps = 4;
+  scenes::World world(def);
+  loam_emitter_def later;
+  scenes::require(loam_emitter_def_default(&later, sizeof later), "loam_emitter_def_default");
+  later.material = world.add(block);
+  later.radius = 0.05f;
+  later.start = 100;
+  loam_emitter_id emitter = 0;
+  scenes::require(loam_emitter_create(world.get(), &later, &emitter), "loam_emitter_create");
+  const cloths::Grid grid(30, 30, 0.01f);
+  loam_cloth_def cloth_def = cloths::definition(grid);
+  cloth_def.position[1] = lowest - 0.006f;
+  cloth_def.velocity[1] = 2; // up, against the block
+  const cloths::Cloth cloth(world.get(), cloth_def);
+  cloth.set_wind(0, 0, 0, 0, 0);
+  world.step(1.0f / 120);
+  std::uint64_t contacts = 0;
+  for (const loam_stage &stage : world.stages())
+    if (std::string(stage.name) == "cloth and particles") contacts = stage.items;
+  ASSERT_GT(contacts, 0u);
+  std::vector<std::uint32_t> ids(block.count());
+  std::iota(ids.begin(), ids.end(), 0u);
+  scenes::require(loam_particles_remove(world.get(), ids.data(), ids.size()), "loam_particles_remove");
+  const auto mean_speed = [&] {
+    const cloths::Cloth::Vertices now = cloth.vertices();
+    double momentum = 0, mass = 0;
+    for (std::size_t i = 0; i < now.count(); ++i) {
+      momentum += double(now.velocities[3 * i + 1]) / double(now.inverse_masses[i]);
+      mass += 1 / double(now.inverse_masses[i]);
+    }
+    return momentum / mass;
+  };
+  const double before = mean_speed();
+  for (int frame = 0; frame < 4; ++frame) world.step(1.0f / 120);
+  const double change = mean_speed() - before, fall = double(def.gravity[1]) * 4 / 120;
+  RecordProperty("change", std::to_string(change / fall));
+  EXPECT_NEAR(change / fall, 1, 1e-3);
 }
 
 } // namespace
