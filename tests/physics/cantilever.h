@@ -1,39 +1,12 @@
 /* Cantilevers under their own weight, and the elastica that they are to follow. */
 #pragma once
 
+#include "elastica.h"
 #include "solid.h"
 
 namespace loam::test {
 
-/* The end of an inextensible beam of length 1 under its own weight `load` = q L^3 / (E I) and a force P = `tip` E I / L^2 at its end, both across it:
- * with the slope t at the arc length s, t'' = -(load (1 - s) + tip) cos t, t(0) = 0, t'(1) = 0. Shooting by bisection on t'(0). */
-struct Elastica {
-  double drop, shortening;
-};
-inline Elastica elastica(double load, double tip = 0) {
-  const int n = 400;
-  Elastica end = {};
-  const auto shoot = [&](double curvature) {
-    double t = 0, k = curvature;
-    end = {};
-    const double h = 1.0 / n;
-    const auto slope = [&](double s, double angle) { return -(load * (1 - s) + tip) * std::cos(angle); };
-    for (int i = 0; i < n; ++i) { // midpoint rule
-      const double s = i * h, middle = t + h / 2 * k, k_middle = k + h / 2 * slope(s, t);
-      t += h * k_middle;
-      k += h * slope(s + h / 2, middle);
-      end.drop += h * std::sin(middle);
-      end.shortening += h * (1 - std::cos(middle));
-    }
-    return k;
-  };
-  double low = 0, high = 2 * (load + tip) + 1;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = (low + high) / 2;
-    (shoot(middle) > 0 ? high : low) = middle;
-  }
-  return end;
-}
+using reference::elastica;
 
 /* A square beam of unit density 1000 kg/m^3 along x, held at x < 0, slowly loaded; the drop of its end over its length, averaged over a period. */
 struct Cantilever {
@@ -51,7 +24,11 @@ struct Cantilever {
     return 12 * density * gravity * std::pow(metres(), 3) / (load * std::pow(layers * spacing, 2));
   }
 
-  Elastica run() const {
+  /* Over its length. */
+  struct Bent {
+    double drop, shortening;
+  };
+  Bent run() const {
     const Points points = {float(spacing), jitter, seed};
     Solid beam(scenes::rubber(float(youngs_modulus())), points.box({0, 0, 0}, {length, layers, width}));
     beam.held = Points{float(spacing), jitter, seed + 100}.box({-3, 0, 0}, {0, layers, width});
