@@ -203,11 +203,18 @@ int FiniteElements::solve(int load_steps) {
       const std::vector<Vector3<double>> step = newton.direction(reactions_);
       double slope = 0;
       for (std::size_t node = 0; node < rest_.size(); ++node) slope += reactions_[node].dot(step[node]);
-      const double before = potential(positions_, loads), rounding = 1e-13 * std::fabs(before);
+      const double before = potential(positions_, loads);
       const std::vector<Vector3<double>> from = positions_;
       for (double length = 1; length > 1e-8; length /= 2) {
         for (std::size_t node = 0; node < rest_.size(); ++node) positions_[node] = from[node] + length * step[node];
-        if (potential(positions_, loads) <= before + 1e-4 * length * slope + rounding) break;
+        const double now = potential(positions_, loads);
+        if (now < before + 1e-4 * length * slope) break;
+        // Close to the minimum the change is lost in rounding; the slope is not.
+        if (now > before + 1e-6 * std::fabs(before)) continue;
+        const std::vector<Vector3<double>> forces = newton.residual(loads);
+        double slope_now = 0;
+        for (std::size_t node = 0; node < rest_.size(); ++node) slope_now += forces[node].dot(step[node]);
+        if (std::fabs(slope_now) < -0.5 * slope) break;
       }
     }
   }

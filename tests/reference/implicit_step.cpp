@@ -22,8 +22,7 @@ StepEnergy::StepEnergy(const HenckySolid &solid, const Particles<double> &partic
                        const Neighbourhoods<double> &neighbourhoods, std::size_t fewest_neighbours, double drift_stiffness,
                        const Vector3<double> &gravity, double step)
     : solid_(solid), particles_(particles), neighbourhoods_(neighbourhoods), fewest_neighbours_(fewest_neighbours),
-      drift_stiffness_(drift_stiffness), step_(step), shares_(neighbourhoods.pair_count(), 0.0),
-      own_shares_(particles.size(), 0.0) {
+      drift_stiffness_(drift_stiffness), step_(step) {
   const auto count = Eigen::Index(particles.size());
   free_motion_.resize(3, count);
   drifts_ = Vectors::Zero(3, count);
@@ -33,18 +32,17 @@ StepEnergy::StepEnergy(const HenckySolid &solid, const Particles<double> &partic
 
     double squares = 0;
     Vector3<double> moment = Vector3<double>::Zero();
-    const std::uint32_t first = neighbourhoods.first_pair[p], last = neighbourhoods.first_pair[p + 1];
-    for (std::uint32_t pair = first; pair < last; ++pair) {
+    Matrix3<double> unknown = Matrix3<double>::Identity();
+    for (std::uint32_t pair = neighbourhoods.first_pair[p]; pair < neighbourhoods.first_pair[p + 1]; ++pair) {
+      const Vector3<double> offset = particles.positions[neighbourhoods.neighbour[pair]] - particles.positions[p];
       const double square = neighbourhoods.gradient[pair].squaredNorm();
       squares += square;
-      moment += square * (particles.positions[neighbourhoods.neighbour[pair]] - particles.positions[p]);
+      moment += square * offset;
+      unknown -= neighbourhoods.gradient[pair] * offset.transpose();
     }
-    if (squares == 0) continue;
-    for (std::uint32_t pair = first; pair < last; ++pair) {
-      const Vector3<double> &G = neighbourhoods.gradient[pair];
-      shares_[pair] = (G.squaredNorm() - moment.dot(G)) / squares;
-      own_shares_[p] += shares_[pair];
-    }
+    unknown_.push_back(unknown);
+    scales_.push_back(squares > 0 ? 1 / squares : 0);
+    moments_.push_back(scales_[p] * moment);
   }
   hold_pinned(free_motion_);
 }
@@ -59,14 +57,15 @@ Matrix3<double> StepEnergy::gradient_step(std::size_t p, const Vectors &velociti
   for (std::uint32_t pair = neighbourhoods_.first_pair[p]; pair < neighbourhoods_.first_pair[p + 1]; ++pair)
     sum += (velocities.col(neighbourhoods_.neighbour[pair]) - velocities.col(Eigen::Index(p))) *
            neighbourhoods_.gradient[pair].transpose();
-  return step_ * sum;
+  return step_ * (sum - sum.transpose() * unknown_[p]);
 }
 
 Vector3<double> StepEnergy::non_affine_step(std::size_t p, const Vectors &velocities) const {
   Vector3<double> sum = Vector3<double>::Zero();
   for (std::uint32_t pair = neighbourhoods_.first_pair[p]; pair < neighbourhoods_.first_pair[p + 1]; ++pair)
-    sum += shares_[pair] * (velocities.col(Eigen::Index(p)) - velocities.col(neighbourhoods_.neighbour[pair]));
-  return step_ * sum;
+    sum += neighbourhoods_.gradient[pair].squaredNorm() *
+           (velocities.col(Eigen::Index(p)) - velocities.col(neighbourhoods_.neighbour[pair]));
+  return step_ * scales_[p] * sum + gradient_step(p, velocities) * moments_[p];
 }
 
 double StepEnergy::value(const Vectors &velocities) const {
@@ -74,7 +73,8 @@ double StepEnergy::value(const Vectors &velocities) const {
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const double inverse_mass = particles_.motions[p].inverse_mass;
     if (inverse_mass > 0)
-      sum += (velocities.col(Eigen::Index(p)) - free_motion_.col(Eigen::Index(p))).squaredNorm() / (2 * inverse_mass);
+      sum += velocities.col(Eigen::Index(p)).dot(velocities.col(Eigen::Index(p)) / 2 - free_motion_.col(Eigen::Index(p))) /
+             inverse_mass;
     if (!stressed(p)) continue;
     const Matrix3<double> D = Matrix3<double>::Identity() + gradient_step(p, velocities);
     const Vector3<double> drift = drifts_.col(Eigen::Index(p)) + non_affine_step(p, velocities);
@@ -84,11 +84,14 @@ double StepEnergy::value(const Vectors &velocities) const {
   return sum;
 }
 
-/* To the velocities of the neighbourhood: the derivative of stress : (h grad v) + drift_force . (h n_p). */
+/* To the velocities of the neighbourhood: the derivative of stress : (D - I) + drift_force . (h n_p). */
 void StepEnergy::scatter(std::size_t p, const Matrix3<double> &stress, const Vector3<double> &drift_force,
                          Vectors &to) const {
+  const Matrix3<double> whole = stress + drift_force * moments_[p].transpose();
+  const Matrix3<double> known = whole - unknown_[p] * whole.transpose();
   for (std::uint32_t pair = neighbourhoods_.first_pair[p]; pair < neighbourhoods_.first_pair[p + 1]; ++pair) {
-    const Vector3<double> share = step_ * (stress * neighbourhoods_.gradient[pair] - shares_[pair] * drift_force);
+    const Vector3<double> &G = neighbourhoods_.gradient[pair];
+    const Vector3<double> share = step_ * (known * G - scales_[p] * G.squaredNorm() * drift_force);
     to.col(neighbourhoods_.neighbour[pair]) += share;
     to.col(Eigen::Index(p)) -= share;
   }
@@ -110,7 +113,7 @@ Vectors StepEnergy::gradient(const Vectors &velocities) const {
   return result;
 }
 
-void StepEnergy::linearise(const Vectors &velocities) {
+void StepEnergy::linearise(const Vectors &velocities, bool definite) {
   tangents_.assign(particles_.size(), Matrix9::Zero());
   inverse_diagonals_.assign(particles_.size(), Matrix3<double>::Zero());
   for (std::size_t p = 0; p < particles_.size(); ++p) {
@@ -122,18 +125,22 @@ void StepEnergy::linearise(const Vectors &velocities) {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         for (int l = 0; l < 3; ++l) by_step(i + 3 * j, i + 3 * l) = deformations_[p](l, j);
-    tangents_[p] = by_step.transpose() * solid_.stiffness(F, true) * by_step;
+    tangents_[p] = by_step.transpose() * solid_.stiffness(F, definite) * by_step;
+    const Matrix9 convex = definite ? tangents_[p] : Matrix9(by_step.transpose() * solid_.stiffness(F, true) * by_step);
 
     const double scale = step_ * step_ * particles_.rest_volumes[p];
     const auto add = [&](std::size_t particle, const Vector3<double> &G, double share) {
       Matrix3<double> block = drift_stiffness_ * share * share * Matrix3<double>::Identity();
       for (int j = 0; j < 3; ++j)
-        for (int l = 0; l < 3; ++l) block += G[j] * G[l] * tangents_[p].block<3, 3>(3 * j, 3 * l);
+        for (int l = 0; l < 3; ++l) block += G[j] * G[l] * convex.block<3, 3>(3 * j, 3 * l);
       inverse_diagonals_[particle] += scale * block;
     };
-    for (std::uint32_t pair = neighbourhoods_.first_pair[p]; pair < neighbourhoods_.first_pair[p + 1]; ++pair)
-      add(neighbourhoods_.neighbour[pair], neighbourhoods_.gradient[pair], shares_[pair]);
-    add(p, neighbourhoods_.gradient_sum[p], own_shares_[p]);
+    const Vector3<double> &sum = neighbourhoods_.gradient_sum[p];
+    for (std::uint32_t pair = neighbourhoods_.first_pair[p]; pair < neighbourhoods_.first_pair[p + 1]; ++pair) {
+      const Vector3<double> &G = neighbourhoods_.gradient[pair];
+      add(neighbourhoods_.neighbour[pair], G, scales_[p] * G.squaredNorm() - moments_[p].dot(G));
+    }
+    add(p, sum, 1 - moments_[p].dot(sum));
   }
   for (std::size_t p = 0; p < particles_.size(); ++p)
     if (particles_.motions[p].inverse_mass > 0) inverse_diagonals_[p] = inverse_diagonals_[p].inverse().eval();
@@ -166,16 +173,18 @@ Vectors StepEnergy::precondition(const Vectors &residual) const {
 
 namespace {
 
-/* Conjugate gradients for  second derivative x = right  (Hestenes and Stiefel 1952). */
-Vectors conjugate_gradients(const StepEnergy &energy, const Vectors &right, double tolerance) {
+/* Conjugate gradients for  second derivative x = right  (Hestenes and Stiefel 1952). False where the curvature is found to be negative. */
+bool conjugate_gradients(const StepEnergy &energy, const Vectors &right, double tolerance, Vectors &x) {
   constexpr int most_iterations = 5000;
-  Vectors x = Vectors::Zero(3, right.cols()), residual = right, preconditioned = energy.precondition(residual);
+  x = Vectors::Zero(3, right.cols());
+  Vectors residual = right, preconditioned = energy.precondition(residual);
   Vectors direction = preconditioned;
   double along = dot(residual, preconditioned);
   const double target = tolerance * tolerance * dot(right, right);
   for (int iteration = 0; iteration < most_iterations && dot(residual, residual) > target; ++iteration) {
     const Vectors product = energy.multiply(direction);
-    const double length = along / dot(direction, product);
+    const double curvature = dot(direction, product), length = along / curvature;
+    if (!(curvature > 0)) return false;
     x += length * direction;
     residual -= length * product;
     preconditioned = energy.precondition(residual);
@@ -183,7 +192,7 @@ Vectors conjugate_gradients(const StepEnergy &energy, const Vectors &right, doub
     direction = preconditioned + next / along * direction;
     along = next;
   }
-  return x;
+  return true;
 }
 
 } // namespace
@@ -196,13 +205,22 @@ Vectors ImplicitStep::minimise(StepEnergy &energy, const Vectors &start, double 
     const double length = gradient.norm();
     if (length <= settings_.tolerance * scale) return velocities;
     ++newton_iterations_;
-    energy.linearise(velocities);
-    const Vectors direction = conjugate_gradients(energy, -gradient, std::clamp(length / scale, 1e-6, 0.1));
+    const double linear_tolerance = std::clamp(length / scale, 1e-6, 0.1);
+    Vectors direction;
+    energy.linearise(velocities, false);
+    if (!conjugate_gradients(energy, -gradient, linear_tolerance, direction)) {
+      energy.linearise(velocities, true);
+      conjugate_gradients(energy, -gradient, linear_tolerance, direction);
+    }
     const double before = energy.value(velocities), slope = dot(gradient, direction);
     double share = 1;
-    while (share > 1e-10 &&
-           !(energy.value(velocities + share * direction) <= before + 1e-4 * share * slope + 1e-14 * std::fabs(before)))
-      share /= 2;
+    const auto lowers = [&](const Vectors &at) {
+      const double value = energy.value(at);
+      if (value < before + 1e-4 * share * slope) return true;
+      // Close to the minimum the change is lost in rounding; the slope is not.
+      return value <= before + 1e-6 * std::fabs(before) && std::fabs(dot(energy.gradient(at), direction)) < -0.5 * slope;
+    };
+    while (share > 1e-10 && !lowers(velocities + share * direction)) share /= 2;
     velocities += share * direction;
   }
   throw std::runtime_error("implicit step: no minimum was found");
@@ -231,13 +249,16 @@ void ImplicitStep::advance(double h) {
 
   StepEnergy energy(HenckySolid::from(material_), particles_, neighbourhoods, settings_.fewest_neighbours,
                     2 * material_.shear_modulus * settings_.zero_energy_stiffness / (r * r), settings_.gravity, h);
-  double impulses = 0; // of gravity, of the stress and of the motion that the step starts with
+  // Of gravity, of the stress and of the motion that the step starts with; at least of strains of 1e-5, so that rounding does not count at rest.
+  double impulses = 0;
   Vectors drifts(3, energy.free_motion().cols()), velocities = energy.free_motion();
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     drifts.col(Eigen::Index(p)) = drifts_[particles_.ids[p]];
     velocities.col(Eigen::Index(p)) = particles_.motions[p].velocity;
-    if (particles_.motions[p].inverse_mass > 0)
-      impulses += (h * settings_.gravity / particles_.motions[p].inverse_mass).squaredNorm();
+    if (particles_.motions[p].inverse_mass == 0) continue;
+    const double modulus = material_.lame_lambda + 2 * material_.shear_modulus;
+    impulses += (h * settings_.gravity / particles_.motions[p].inverse_mass).squaredNorm() +
+                std::pow(1e-5 * h * particles_.rest_volumes[p] * modulus / r, 2);
   }
   energy.set_drifts(drifts);
   const Vectors rest = Vectors::Zero(3, velocities.cols());

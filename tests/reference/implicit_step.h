@@ -2,17 +2,18 @@
  *
  * With the corrected gradients G_b of the positions at the step's start (neighbours.h), a step of length h minimises over the velocities v
  *   1/2 sum_p m_p |v_p - v~_p|^2 + sum_p V0_p psi(D_p F_p^n) + 1/2 sum_p k_p |u_p|^2,
- *   v~ = v^n + h g,   D_p = I + h sum_b (v_b - v_p) G_b^T
+ *   v~ = v^n + h g,   D_p = I + H - H^T N_p,   H = h sum_b (v_b - v_p) G_b^T
  * (variational form of implicit Euler: Martin et al. 2011, "Example-based elastic materials"; the discretisation: equations 1 to 6 of XPBI). Then x, F and the true volume
- * advance with v.
+ * advance with v. N_p = I - sum_b G_b (x_b - x_p)^T projects onto the directions in which the neighbours of a surface's particle do not reach: there the matter turns with the
+ * rest and is not strained.
  *
  * The last term resists motion of neighbours that no velocity gradient shows. From
- *   n_p = sum_b phi_b (v_p - v_b),   phi_b = kappa |G_b|^2 - m . G_b,   kappa = 1 / sum_b |G_b|^2,   m = kappa sum_b |G_b|^2 (x_b - x_p),
+ *   n_p = kappa sum_b |G_b|^2 (v_p - v_b) + (D_p - I) m / h,   kappa = 1 / sum_b |G_b|^2,   m = kappa sum_b |G_b|^2 (x_b - x_p),
  * which vanishes for linear fields, the drift u_p = Q u_p^n + h n_p adds up; Q turns it by the spin of D without changing its length, and is no part of the
  * minimisation: it is taken from the last minimum and found anew until it does not change. k_p = 2 mu V0_p stiffness / r^2.
  *
  * The minimum is found by Newton's method with a line search, its linear systems by conjugate gradients. Elastic energies only, no contacts. A particle with too few
- * neighbours has no stress, and in directions in which it has none its gradient has no part. */
+ * neighbours has no stress. */
 #pragma once
 
 #include "hencky_solid.h"
@@ -34,12 +35,12 @@ public:
 
   const Vectors &free_motion() const { return free_motion_; } // v~; 0 where pinned
 
-  double value(const Vectors &velocities) const;
+  double value(const Vectors &velocities) const;     // but for the constant m |v~|^2 / 2
   Vectors gradient(const Vectors &velocities) const; // 0 where pinned
 
-  /* Prepares `multiply` and `precondition` at these velocities. */
-  void linearise(const Vectors &velocities);
-  Vectors multiply(const Vectors &direction) const; // by the second derivative, negative curvature of psi left out
+  /* Prepares `multiply` and `precondition` at these velocities; `definite`: with what negative curvature psi has left out. */
+  void linearise(const Vectors &velocities, bool definite);
+  Vectors multiply(const Vectors &direction) const; // by the second derivative
   Vectors precondition(const Vectors &residual) const;
 
   Matrix3<double> gradient_step(std::size_t particle, const Vectors &velocities) const;   // h grad v
@@ -57,8 +58,9 @@ private:
   double drift_stiffness_, step_; // 2 mu stiffness / r^2; h
   Vectors free_motion_, drifts_;
   std::vector<Matrix3<double>> deformations_; // F^n
-  std::vector<double> shares_;                // phi_b, per pair
-  std::vector<double> own_shares_;            // their sum, per particle
+  std::vector<Matrix3<double>> unknown_;      // N
+  std::vector<double> scales_;                // kappa
+  std::vector<Vector3<double>> moments_;      // m
   std::vector<Matrix9> tangents_;             // d^2 psi / dD^2
   std::vector<Matrix3<double>> inverse_diagonals_;
 };
