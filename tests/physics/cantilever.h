@@ -28,11 +28,25 @@ struct Cantilever {
   struct Bent {
     double drop, shortening;
   };
+
+  loam_material_def material() const {
+    loam_material_def material = scenes::rubber(float(youngs_modulus()));
+    material.density = float(density);
+    return material;
+  }
+  std::vector<float> free_points() const {
+    return Points{float(spacing), jitter, seed}.box({0, 0, 0}, {length, layers, width});
+  }
+  std::vector<float> held_points() const {
+    return Points{float(spacing), jitter, seed + 100}.box({-3, 0, 0}, {0, layers, width});
+  }
+
+  /* From the last slice, which lies half a spacing before the end, on a line that is nearly straight there. */
+  double at_end(double of_last_slice) const { return of_last_slice * length / (length - 0.5) / metres(); }
+
   Bent run() const {
-    const Points points = {float(spacing), jitter, seed};
-    Solid beam(scenes::rubber(float(youngs_modulus())), points.box({0, 0, 0}, {length, layers, width}));
-    beam.held = Points{float(spacing), jitter, seed + 100}.box({-3, 0, 0}, {0, layers, width});
-    beam.scene.material.density = float(density);
+    Solid beam(material(), free_points());
+    beam.held = held_points();
     beam.def.iterations = iterations;
     beam.def.substeps = 10;
     beam.def.zero_energy_stiffness = zero_energy_stiffness;
@@ -56,9 +70,7 @@ struct Cantilever {
         samples += 1;
       }
     }
-    // The last slice lies half a spacing before the end, on a line that is nearly straight there.
-    const double extrapolate = length / (length - 0.5) / samples / metres();
-    return {drop * extrapolate, shortening * extrapolate};
+    return {at_end(drop / samples), at_end(shortening / samples)};
   }
 };
 
