@@ -80,7 +80,7 @@ public:
     ClothParticles particles;
   };
   void find_contacts(const Substep &substep);
-  void prepare(const Substep &substep);
+  void prepare(const Substep &substep, int *speed_limited);
   void solve(const Substep &substep);
   void solve_contacts(const Substep &substep);
   void solve_particle_contacts(const Substep &substep);
@@ -563,7 +563,7 @@ template <class Executor> void ClothSolver<Executor>::find_contacts(const Subste
   });
 }
 
-template <class Executor> void ClothSolver<Executor>::prepare(const Substep &s) {
+template <class Executor> void ClothSolver<Executor>::prepare(const Substep &s, int *speed_limited) {
   for_each_cloth([&](Cloth &cloth) {
     Row *velocities = cloth.velocities.data();
     const float h = s.seconds;
@@ -577,7 +577,7 @@ template <class Executor> void ClothSolver<Executor>::prepare(const Substep &s) 
                                     cloth.positions.data(),
                                     velocities,
                                     {wind.velocity, air * wind.drag, air * wind.lift, cloth.material.areal_density}});
-    executor_.for_each(cloth.vertex_count, ApplyForces{velocities, h * s.gravity});
+    executor_.for_each(cloth.vertex_count, ApplyForces{velocities, h * s.gravity, unlimited_speed, speed_limited});
     for_each_colour(cloth.hinges, PrepareHinges{cloth.hinges.view(), cloth.positions.data()});
     for_each_colour(cloth.threads, PrepareThreads{cloth.thread_view(), cloth.positions.data()});
   });

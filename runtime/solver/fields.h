@@ -45,9 +45,10 @@ public:
   }
 
   // Changes velocities in a substep.
-  void apply(int count, const Row *positions, Row *velocities, std::uint32_t substep, bool winds) {
+  void apply(int count, const Row *positions, Row *velocities, std::uint32_t substep, bool winds, float greatest_speed,
+             int *limited) {
     executor_.for_each(count, ApplyFields{positions, velocities, views_.data(), static_cast<int>(list_.size()),
-                                          static_cast<int>(substep), winds});
+                                          static_cast<int>(substep), winds, greatest_speed, limited});
   }
 
   // Whom a blast of this substep reaches must be awake. Answers whether there is one.

@@ -36,7 +36,7 @@ public:
   template <class F> void for_each_sheet(F &&) {}
 
   void find_contacts(const Substep &) {}
-  void prepare(const Substep &) {}
+  void prepare(const Substep &, int *) {}
   void solve(const Substep &) {}
   void solve_contacts(const Substep &) {}
   void solve_self_contacts(const Substep &) {}

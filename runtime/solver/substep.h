@@ -9,10 +9,12 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
   const bool last = index + 1 == input.substeps;
 
   if (count_ > 0) search_neighbours(); // sort by cell; lists, corrected gradients and constraint records on x^n
-  ex.for_each(count_, ApplyForces{now_.velocities.data(), h_ * input.gravity});
+  const float greatest_start_speed = greatest_start * settings_.kernel_radius / h_;
+  ex.for_each(count_, ApplyForces{now_.velocities.data(), h_ * input.gravity, greatest_start_speed, counters_.data()});
   lap(schedule_.forces, particles());
   if (schedule_.fields >= 0) {
-    fields_.apply(count_, now_.positions.data(), now_.velocities.data(), index, true);
+    fields_.apply(count_, now_.positions.data(), now_.velocities.data(), index, true, greatest_start_speed,
+                  counters_.data());
     lap(schedule_.fields, particles());
   }
   try {
@@ -31,11 +33,11 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
   // Stages that write another copy of the velocities write those of visited particles only.
   if (schedule_.sleep >= 0) ex.copy(other_.velocities.data(), now_.velocities.data(), static_cast<std::size_t>(count_));
   if (!cloth_.empty()) {
-    cloth_.prepare(cloth_substep(input));
+    cloth_.prepare(cloth_substep(input), counters_.data());
     lap(schedule_.prepare_cloth, cloth_.constraint_count());
     if (schedule_.fields >= 0) {
       cloth_.for_each_sheet([&](int vertices, const Row *positions, Row *velocities) {
-        fields_.apply(vertices, positions, velocities, index, false);
+        fields_.apply(vertices, positions, velocities, index, false, unlimited_speed, counters_.data());
       });
       lap(schedule_.fields, cloth_.vertex_count());
     }

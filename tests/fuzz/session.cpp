@@ -180,11 +180,12 @@ void Session::check_after_step(float seconds, double collider_speed) {
   if (now_.count > 0 && now.substeps_done != now_.substeps)
     find("%u substeps instead of %u", now.substeps_done, now_.substeps);
   const double limit = double(def_.kernel_radius) / (double(seconds) / now_.substeps);
-  // Cloth falls as fast as it will, and carries along what it hits.
+  // Cloth falls as fast as it will, and carries along what it hits. How fast it was within the step nobody sees: as fast as it ever was.
   double cloth_speed = 0;
   if (!now_.cloths.empty()) {
     allocator_.refuse(0);
-    for (const Cloth &cloth : now_.cloths) cloth_speed = std::max(cloth_speed, look_at_cloth(cloth));
+    for (const Cloth &cloth : now_.cloths) now_.cloth_speed = std::max(now_.cloth_speed, look_at_cloth(cloth));
+    cloth_speed = now_.cloth_speed;
   }
   double stream_speed = 0; // of what has just come out
   for (const Emitter &emitter : now_.emitters) stream_speed = std::max(stream_speed, emitter.speed);

@@ -70,6 +70,7 @@ struct Known {
   std::vector<Material> materials;
   std::vector<Collider> colliders;
   std::vector<Cloth> cloths;
+  double cloth_speed = 0; // the greatest that was seen of any
   std::vector<Emitter> emitters;
   std::vector<loam_field_id> fields;
   std::vector<Killer> killers;

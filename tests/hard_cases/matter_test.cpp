@@ -1,4 +1,6 @@
 /* Hard matter: stiffness over seven decades, steps over four, impacts, mixtures, gravity that changes its mind. */
+#include <random>
+
 #include "hard_case.h"
 
 namespace loam {
@@ -64,6 +66,20 @@ TEST_P(Matter, AnImpactBeyondTheSpeedLimitIsSlowedDown) {
   const Outcome outcome = survive(hard);
   EXPECT_LE(outcome.peak_speed, 0.01 / (1.0 / 120 / 8) * 1.0001);
   EXPECT_GT(outcome.lowest, 0.0025);
+}
+
+TEST_P(Matter, WhatIsHurledIsSlowedBeforeAndAfterTheIterations) {
+  test::shows("1e9 m/s in all directions, a hundred million times what a substep carries");
+  scenes::Scene matter = block(scenes::sand(), 6, 0.05f);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> uniform(-1e9f, 1e9f);
+  for (float &v : matter.velocities) v = uniform(random);
+  HardCase hard(GetParam(), {without_planes(matter)});
+  hard.def.substeps = 1;
+  hard.steps = 1;
+  const Outcome outcome = survive(hard);
+  EXPECT_GE(outcome.speed_limited, matter.count() * 3 / 2); // all before, and most after
+  EXPECT_GT(outcome.statistics.mean_speed, 0.6);            // of 1.2 m/s
 }
 
 TEST_P(Matter, AllMaterialsMixedParticleByParticle) {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+#include "kernels/inelastic/kinematics.h"
 #include "kernels/materials/project.h"
 #include "math/tensor_functions.h"
 #include "scene/material.h"
@@ -172,6 +173,21 @@ TEST(Pack, ReturnMappingsHaveTheBitsOfTheScalarText) {
           },
           make_law(def));
     }
+}
+
+/* Rare paths are taken for all lanes as soon as one needs them. What they multiply by 0 may be infinite. */
+TEST(Pack, ALaneWithoutUnknownDirectionsKeepsWhatItHas) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  Mat3<Pack> H = zero_matrix<Pack>();
+  H.m[0][1] = pack_of(infinity, 0.1f, -infinity, 3);
+  const Vec3<Pack> q = {pack_of(0, 1, 0, 0), Pack(0.0f), Pack(0.0f)};
+  for (const Mat3<Pack> &result : {complete_gradient(H, q), restrict_impulse(H, q)}) {
+    const Lanes entry(result.m[0][1]), before(H.m[0][1]), other(result.m[1][0]);
+    for (const int lane : {0, 2, 3}) {
+      EXPECT_EQ(entry[lane], before[lane]) << lane;
+      EXPECT_EQ(other[lane], 0) << lane;
+    }
+  }
 }
 
 } // namespace

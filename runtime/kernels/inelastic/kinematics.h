@@ -31,18 +31,21 @@ template <class T> LOAM_FN UnknownDirections<T> unknown_directions(Vec3<T> q) {
   return {select(two, T(1.0f), T(0.0f)), select(two, T(-0.25f), T(1.0f)), q};
 }
 template <class T> LOAM_FN Mat3<T> complete_gradient(const Mat3<T> &H, Vec3<T> q) {
-  if (!any(dot(q, q) > T(0.0f))) return H;
+  const auto some = dot(q, q) > T(0.0f);
+  if (!any(some)) return H;
   const UnknownDirections<T> n = unknown_directions(q);
   const Vec3<T> column = {H.m[0][0] * q.x + (H.m[1][0] * q.y + H.m[2][0] * q.z),
                           H.m[0][1] * q.x + (H.m[1][1] * q.y + H.m[2][1] * q.z),
                           H.m[0][2] * q.x + (H.m[1][2] * q.y + H.m[2][2] * q.z)}; // H^T q
-  return H - (n.isotropic * transpose(H) + outer(n.along * column, q));
+  return select(some, H - (n.isotropic * transpose(H) + outer(n.along * column, q)),
+                H); // of others, 0 times infinity is none
 }
 template <class T> LOAM_FN Mat3<T> restrict_impulse(const Mat3<T> &impulse, Vec3<T> q) {
-  if (!any(dot(q, q) > T(0.0f))) return impulse;
+  const auto some = dot(q, q) > T(0.0f);
+  if (!any(some)) return impulse;
   const UnknownDirections<T> n = unknown_directions(q);
-  return impulse -
-         (n.isotropic * transpose(impulse) + outer(n.along * q, impulse * q)); // N T^T = isotropic T^T + along q (T q)^T
+  // N T^T = isotropic T^T + along q (T q)^T
+  return select(some, impulse - (n.isotropic * transpose(impulse) + outer(n.along * q, impulse * q)), impulse);
 }
 
 // b - I of D b D^T with D = I + H, from S = b - I, without ever adding I: float32 keeps its relative accuracy for small strains.

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "kernels/integration/integrate.h"
 #include "math/functions.h"
 #include "math/vector.h"
 
@@ -27,6 +28,8 @@ struct ApplyFields {
   const FieldView *fields;
   int count, substep;
   bool winds; // whether those are for these
+  float greatest_speed;
+  int *limited; // counter
 
   LOAM_FN void operator()(int i) const {
     Row row = velocities[i];
@@ -59,6 +62,7 @@ struct ApplyFields {
     row.x = v.x;
     row.y = v.y;
     row.z = v.z;
+    if (slow_down(row, greatest_speed)) atomic_add(limited, 1);
     velocities[i] = row;
   }
 };

@@ -6,42 +6,54 @@
 
 namespace loam {
 
+// Slows a velocity down to `greatest`; one that is not finite becomes 0. Answers whether it was too fast.
+LOAM_FN bool slow_down(Row &v, float greatest) {
+  const float squared = v.x * v.x + (v.y * v.y + v.z * v.z);
+  if (squared <= greatest * greatest) return false;
+  if (is_finite(xyz(v))) {
+    // by the largest component first, so that squares do not overflow
+    const float largest = maximum(maximum(absolute(v.x), absolute(v.y)), absolute(v.z));
+    const Vec3<float> u = (1.0f / largest) * xyz(v);
+    const float scale = greatest / (largest * length(u));
+    v.x *= scale;
+    v.y *= scale;
+    v.z *= scale;
+  } else {
+    v.x = v.y = v.z = 0.0f;
+  }
+  return true;
+}
+
+// Nothing goes into the iterations faster than this many times the speed that it could leave them with, whatever the host, a field or gravity gave it: squares of
+// strains would overflow.
+constexpr float greatest_start = 4.0f;
+constexpr float unlimited_speed = 3.402823466e+38f; // of cloth, which may fall as fast as it will
+
 // v <- v + h g
 struct ApplyForces {
   Row *velocities;
   Vec3<float> velocity_change;
+  float greatest_speed;
+  int *limited; // counter
   LOAM_FN void operator()(int i) const {
     Row v = velocities[i];
     if (v.w == 0.0f) return; // pinned
     v.x += velocity_change.x;
     v.y += velocity_change.y;
     v.z += velocity_change.z;
+    if (slow_down(v, greatest_speed)) atomic_add(limited, 1);
     velocities[i] = v;
   }
 };
 
-// Slows particles down to `greatest_speed`, r / h: beyond about that, matter would jump over its neighbours and over thin colliders. A velocity that
-// is not finite becomes 0.
+// Slows particles down to `greatest_speed`, r / h: beyond about that, matter would jump over its neighbours and over thin colliders.
 struct LimitSpeed {
   Row *velocities;
   float greatest_speed;
   int *limited; // counter
   LOAM_FN void operator()(int i) const {
     Row v = velocities[i];
-    const float squared = v.x * v.x + (v.y * v.y + v.z * v.z);
-    if (squared <= greatest_speed * greatest_speed) return;
-    float scale = 0.0f;
-    if (is_finite(xyz(v))) {
-      // by the largest component first, so that squares do not overflow
-      const float largest = maximum(maximum(absolute(v.x), absolute(v.y)), absolute(v.z));
-      const Vec3<float> u = (1.0f / largest) * xyz(v);
-      scale = greatest_speed / (largest * length(u));
-      v.x *= scale;
-      v.y *= scale;
-      v.z *= scale;
-    } else {
-      v.x = v.y = v.z = 0.0f;
-    }
+    if (!slow_down(v, greatest_speed)) return;
     velocities[i] = v;
     atomic_add(limited, 1);
   }

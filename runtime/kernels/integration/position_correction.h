@@ -38,8 +38,9 @@ struct CorrectPositions {
   }
 
   // One-sided: the pair's impulse along its direction and, in contact, against its sliding at `velocity`; and its moment.
-  template <class T>
-  LOAM_FN Vec3<T> impulse(Vec3<T> d, Vec3<T> velocity, T least, T friction, T weight, T active, int turn, T &moment) const {
+  template <class T, class Mask>
+  LOAM_FN Vec3<T> impulse(Vec3<T> d, Vec3<T> velocity, T least, T friction, T weight, Mask active, int turn,
+                          T &moment) const {
     const T zero(0.0f), one(1.0f), h(substep);
     const T squared = dot(d, d);
     const auto coincident = squared < T(1e-10f) * least * least;
@@ -47,11 +48,11 @@ struct CorrectPositions {
     const T distance = square_root(squared);
     const T reciprocal = one / select(coincident, one, distance);
     const Vec3<T> n = select(coincident, Vec3<T>{T(f.x), T(f.y), T(f.z)}, reciprocal * d);
-    const T violation = maximum(least - distance, zero) * active;
+    const T violation = maximum(least - distance, zero);
     const auto movable = weight > zero;
     const T change = select(movable, T(share) * violation / (h * select(movable, weight, one)), zero);
     const T along = n.x * T(up.x) + (n.y * T(up.y) + n.z * T(up.z));
-    moment = moment + change * along * along * distance;
+    moment = moment + select(active, change * along * along * distance, zero);
     Vec3<T> result = change * n;
     if (meetings.any()) {
       const Vec3<T> sliding = velocity - dot(n, velocity) * n;
@@ -60,7 +61,7 @@ struct CorrectPositions {
       const T most = minimum(friction * change, select(movable, speed / select(movable, weight, one), zero));
       result = result - select(slides, most / select(slides, speed, one), zero) * sliding;
     }
-    return result;
+    return select(active, result, Vec3<T>{zero, zero, zero});
   }
 };
 
@@ -71,7 +72,7 @@ struct CorrectPositionsInTurn : CorrectPositions {
     const Vec4<Real> own = team.velocity(p);
     const Vec3<Real> x = team.own_row(p, positions).xyz();
     Vec3<Real> v = own.xyz();
-    const Real close = team.field(p, Record::close_count), h(substep), zero(0.0f), one(1.0f);
+    const Real close = team.field(p, Record::close_count), h(substep);
     Real moment = team.field(p, Record::pair_moment);
     int turn = 0;
     for (auto k : team.close_neighbours(p)) {
@@ -83,8 +84,7 @@ struct CorrectPositionsInTurn : CorrectPositions {
       const auto too_near = violated(d, least, Real(static_cast<float>(turn)), close);
       ++turn;
       if (!any(too_near)) continue;
-      const Vec3<Real> j =
-          impulse(d, v - other.xyz(), least, friction, own.w + other.w, select(too_near, one, zero), turn, moment);
+      const Vec3<Real> j = impulse(d, v - other.xyz(), least, friction, own.w + other.w, too_near, turn, moment);
       const Vec3<Real> u = other.xyz() - other.w * j;
       team.set_neighbour_velocity(k, {u.x, u.y, u.z, other.w});
       v = v + own.w * j;
@@ -103,8 +103,8 @@ struct CorrectPositionsAtOnce : CorrectPositions {
     const Vec4<Real> own = team.velocity(p);
     const Vec3<Real> x = team.own_row(p, positions).xyz();
     Vec3<Real> sum = {Real(0.0f), Real(0.0f), Real(0.0f)};
-    const Real close = team.field(p, Record::close_count), h(substep), zero(0.0f), one(1.0f);
-    Real moment = zero;
+    const Real close = team.field(p, Record::close_count), h(substep);
+    Real moment(0.0f);
     int turn = 0;
     for (auto k : team.close_neighbours(p)) {
       const Vec4<Real> other = team.neighbour_velocity(k);
@@ -115,8 +115,7 @@ struct CorrectPositionsAtOnce : CorrectPositions {
       const auto too_near = violated(d, least, Real(static_cast<float>(turn)), close);
       ++turn;
       if (!any(too_near)) continue;
-      sum = sum +
-            impulse(d, own.xyz() - other.xyz(), least, friction, own.w + other.w, select(too_near, one, zero), turn, moment);
+      sum = sum + impulse(d, own.xyz() - other.xyz(), least, friction, own.w + other.w, too_near, turn, moment);
     }
     const Vec3<Real> v = own.xyz() + own.w * sum;
     team.set_own_row(p, corrected, {v.x, v.y, v.z, own.w});
