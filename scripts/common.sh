@@ -13,7 +13,7 @@ configure() {
   local preset=$1 options=() output
   shift
   if command -v ccache >/dev/null; then
-    export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
+    export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=pch_defines,time_macros # the latter for precompiled headers
     options=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_CUDA_COMPILER_LAUNCHER=ccache)
   fi
   output=$(cmake --preset "$preset" "${options[@]}" "$@" 2>&1) || { printf '%s\n' "$output"; die "configuring $preset failed"; }
