@@ -61,6 +61,9 @@ typedef struct loam_collider_def {
 
   float restitution; /* see loam_collider_contact; default 0 */
   float stick;       /* the same; default 0 */
+
+  uint32_t deforms;    /* MESH only: 1 if its vertices will be moved, see loam_collider_move_vertices; default 0 */
+  uint32_t reserved_2; /* 0 */
 } loam_collider_def;
 
 /* Errors: INVALID_ARGUMENT for null or an unknown size. */
@@ -85,6 +88,28 @@ LOAM_API loam_status loam_collider_move(loam_world *world, loam_collider_id coll
 /* Like move, but at once and without a velocity: a teleport. Matter that was inside or in between is not pushed. */
 LOAM_API loam_status loam_collider_place(loam_world *world, loam_collider_id collider, const float position[3],
                                          const float rotation[4]);
+
+/* Where the vertices of a mesh are to be at the end of the next step, in the collider's own frame: x, y, z of each, metres, as many and in the order of the mesh
+ * that the collider was made of; its triangles stay. `positions` belongs to the host and is read during the call only. During the step each vertex goes
+ * there on a straight line at constant speed, in the frame of the collider, which may be moved as well; matter is carried and pushed, by friction too, by the
+ * speed of the point that it touches. After it the vertices rest there until moved again; a second call before the step replaces the first. Another step
+ * than expected (a failed one) leaves them where its last substep did, on their way.
+ *
+ * Features of the surface are those of the mesh as made: vertices that had the same place then should stay together, and parts of a skin that will come
+ * apart should not touch in the mesh that the collider is made of. A triangle that loses its area is met as the line or point that it is. Surfaces that pass through each
+ * other, or close on matter between them, leave it no place: it stays on its side of most of them, but not for certain. A triangle should not turn
+ * by more than about a quarter turn in a substep.
+ *
+ * In a step in which its vertices move it wakes what sleeps within its greatest distance from its origin. Moving costs time by the number of
+ * triangles, in every substep; resting costs none. Cloth attached to the collider is attached to its frame, not to its vertices.
+ * Errors: INVALID_HANDLE; INVALID_ARGUMENT for a null, for another number of vertices, naming the index and value of what is not finite or beyond
+ * 1e8 m, and for a collider that was made with deforms 0. The vertices then stay as they were. */
+LOAM_API loam_status loam_collider_move_vertices(loam_world *world, loam_collider_id collider, const float *positions,
+                                                 uint32_t vertex_count);
+
+/* Like move_vertices, but at once and without a velocity, as loam_collider_place. */
+LOAM_API loam_status loam_collider_place_vertices(loam_world *world, loam_collider_id collider, const float *positions,
+                                                  uint32_t vertex_count);
 
 /* How matter behaves on a collider. */
 typedef struct loam_collider_contact {

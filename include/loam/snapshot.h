@@ -1,6 +1,7 @@
 /* Snapshots: the state of a world in a block of the host's memory, to go back to (rollback, replay, a saved game).
  *
- * A snapshot holds what moves: particles, vertices of cloth with what they are attached to, poses of colliders, how far streams are, where fields and
+ * A snapshot holds what moves: particles, vertices of cloth with what they are attached to, poses of colliders and the vertices
+ * of meshes that deform, how far streams are, where fields and
  * killers are and which blasts are over, wind, gravity, substeps and iterations. It does not hold what the host described once, meshes above all, nor what
  * can be found again: neighbours, contacts, distances to colliders, statistics. So it is restored into a world that was described alike, be it the one that was saved, or one made anew:
  *
@@ -8,7 +9,7 @@
  *                         multiplier, zero_energy_stiffness, sleep_speed, sleep_delay
  *   materials             the same places in the order of creation (a place of a destroyed one is taken by the next), the same definitions but for
  *                         the name, and the same meetings
- *   colliders             the same places, kind, contacts, dimensions, meshes and grids
+ *   colliders             the same places, kind, contacts, dimensions, meshes (as the collider was made) and grids
  *   cloths                the same places, mesh and definition, but for where the cloth began
  *   emitters              the same places and definitions, but for where the nozzle began and when_full
  *   fields and killers    the same places and definitions, but for their positions and rotations
@@ -22,7 +23,7 @@
  * checksum over all of its bytes. The library reads its own version only. A particle takes 56 bytes; and 12 more where a material of the
  * world resists zero-energy modes (see loam_world_def.zero_energy_stiffness). Besides, a particle takes 1 byte each for its mass, its volume, its material and
  * what its law remembers of yielding where the world has 2 to 256 different values of it, and 4 where there are more: so sand that has flowed takes 60. A
- * vertex takes 24 bytes.
+ * vertex of a cloth takes 24 bytes, as does one of a mesh that deforms.
  *
  * Thread contract: as for the world; during an asynchronous step every function here that takes a world answers LOAM_ERROR_BUSY.
  */
@@ -36,7 +37,7 @@
 extern "C" {
 #endif
 
-#define LOAM_SNAPSHOT_VERSION 3
+#define LOAM_SNAPSHOT_VERSION 4
 
 /* The bytes that a snapshot of the world as it is now takes, exactly. Reads part of the particles, and so takes about a quarter of the time of saving.
  * Errors: INVALID_ARGUMENT for null. */

@@ -6,8 +6,8 @@ using namespace loam;
 
 namespace {
 
-// The size before the kinds beyond MESH.
-constexpr std::size_t first_size = offsetof(loam_collider_def, radius);
+// The sizes before the kinds beyond MESH, and before meshes that deform.
+constexpr std::size_t first_size = offsetof(loam_collider_def, radius), second_size = offsetof(loam_collider_def, deforms);
 
 loam_collider_def default_collider() {
   loam_collider_def def = {};
@@ -21,14 +21,14 @@ loam_collider_def default_collider() {
 } // namespace
 
 loam_status loam_collider_def_default(loam_collider_def *def, size_t size) {
-  return guarded(nullptr, [&] { write_definition(def, "def", size, default_collider(), {first_size}); });
+  return guarded(nullptr, [&] { write_definition(def, "def", size, default_collider(), {first_size, second_size}); });
 }
 
 loam_status loam_collider_create(loam_world *world, const loam_collider_def *def, loam_collider_id *collider) {
   return guarded(world, [&] {
     check_pointer(world, "world");
     check_pointer(collider, "collider");
-    *collider = world->create_collider(read_definition(def, "def", default_collider(), {first_size}));
+    *collider = world->create_collider(read_definition(def, "def", default_collider(), {first_size, second_size}));
   });
 }
 
@@ -61,6 +61,29 @@ loam_status loam_collider_move(loam_world *world, loam_collider_id collider, con
 loam_status loam_collider_place(loam_world *world, loam_collider_id collider, const float position[3],
                                 const float rotation[4]) {
   return pose(world, collider, position, rotation, true);
+}
+
+namespace {
+
+loam_status move_vertices(loam_world *world, loam_collider_id collider, const float *positions, uint32_t vertex_count,
+                          bool at_once) {
+  return guarded(world, [&] {
+    check_pointer(world, "world");
+    check_pointer(positions, "positions");
+    world->move_vertices(collider, positions, vertex_count, at_once);
+  });
+}
+
+} // namespace
+
+loam_status loam_collider_move_vertices(loam_world *world, loam_collider_id collider, const float *positions,
+                                        uint32_t vertex_count) {
+  return move_vertices(world, collider, positions, vertex_count, false);
+}
+
+loam_status loam_collider_place_vertices(loam_world *world, loam_collider_id collider, const float *positions,
+                                         uint32_t vertex_count) {
+  return move_vertices(world, collider, positions, vertex_count, true);
 }
 
 loam_status loam_collider_set_contact(loam_world *world, loam_collider_id collider, loam_material_id material,

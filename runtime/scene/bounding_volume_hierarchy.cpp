@@ -155,8 +155,9 @@ bool less(Vec3<float> a, Vec3<float> b) {
 }
 bool same(Vec3<float> a, Vec3<float> b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
-// Features are matched by place, not by index, so that repeated vertices do not cut the surface.
-void build_features(BoundingVolumeHierarchy &hierarchy) {
+// Features are matched by place, not by index, so that repeated vertices do not cut the surface. Answers with a corner (triangle and a, b or c, as one
+// number) for each vertex of the ring.
+std::vector<std::uint32_t> build_features(BoundingVolumeHierarchy &hierarchy) {
   const std::vector<BvhTriangle> &triangles = hierarchy.triangles;
   std::vector<FeatureUse> uses;
   uses.reserve(triangles.size() * 6);
@@ -183,41 +184,77 @@ void build_features(BoundingVolumeHierarchy &hierarchy) {
   for (std::size_t i = 0; i < uses.size(); ++i) {
     if (i == 0 || !same_feature(i - 1, i)) group[std::size_t(uses[i].triangle) * 6 + uses[i].feature] = i;
   }
+  const auto place_of = [&](std::uint32_t corner) {
+    const BvhTriangle &t = triangles[corner / 3];
+    return corner % 3 == 0 ? t.a : corner % 3 == 1 ? t.b : t.c;
+  };
+  std::vector<std::uint32_t> ring;
   hierarchy.features.resize(triangles.size());
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     BvhFeatures &features = hierarchy.features[t];
     features.owned = 1u << BvhFeatures::inside;
     for (std::uint32_t f = 0; f < 6; ++f) {
-      features.first[f] = std::uint32_t(hierarchy.ring.size());
+      features.first[f] = std::uint32_t(ring.size());
       const std::size_t begin = group[std::size_t(t) * 6 + f];
       if (begin == none) continue;
       features.owned |= 1u << f;
-      const std::size_t ring_begin = hierarchy.ring.size();
+      const std::size_t ring_begin = ring.size();
       for (std::size_t i = begin; i < uses.size() && same_feature(begin, i); ++i) {
         if (uses[i].triangle == t) continue;
-        const BvhTriangle &other = triangles[uses[i].triangle];
-        for (const Vec3<float> &vertex : {other.a, other.b, other.c}) {
-          if (!same(vertex, uses[i].ends[0]) && !same(vertex, uses[i].ends[1])) hierarchy.ring.push_back(vertex);
-        }
+        for (std::uint32_t corner = 3 * uses[i].triangle; corner < 3 * uses[i].triangle + 3; ++corner)
+          if (!same(place_of(corner), uses[i].ends[0]) && !same(place_of(corner), uses[i].ends[1])) ring.push_back(corner);
       }
-      const auto ring = hierarchy.ring.begin() + std::ptrdiff_t(ring_begin);
-      std::sort(ring, hierarchy.ring.end(), less);
-      hierarchy.ring.erase(std::unique(ring, hierarchy.ring.end(), same), hierarchy.ring.end());
+      const auto own = ring.begin() + std::ptrdiff_t(ring_begin);
+      std::sort(own, ring.end(), [&](std::uint32_t i, std::uint32_t j) {
+        return same(place_of(i), place_of(j)) ? i < j : less(place_of(i), place_of(j));
+      });
+      ring.erase(
+          std::unique(own, ring.end(), [&](std::uint32_t i, std::uint32_t j) { return same(place_of(i), place_of(j)); }),
+          ring.end());
     }
-    features.first[6] = std::uint32_t(hierarchy.ring.size());
+    features.first[6] = std::uint32_t(ring.size());
+  }
+  hierarchy.ring.reserve(ring.size());
+  for (const std::uint32_t corner : ring) hierarchy.ring.push_back(place_of(corner));
+  return ring;
+}
+
+// Fills `vertices`. The code and number of each triangle are its key.
+void name_vertices(BoundingVolumeHierarchy &hierarchy, const TriangleMesh &mesh, const std::vector<std::uint64_t> &keys,
+                   const std::vector<std::uint32_t> &ring) {
+  BoundingVolumeHierarchy::Vertices &vertices = hierarchy.vertices;
+  vertices.positions = mesh.vertices;
+  for (const std::uint64_t key : keys)
+    for (std::size_t k = 0; k < 3; ++k) vertices.of_triangles.push_back(mesh.indices[3 * (key & 0xFFFFFFFFu) + k]);
+  for (const std::uint32_t corner : ring) vertices.of_ring.push_back(vertices.of_triangles[corner]);
+
+  const std::size_t count = hierarchy.nodes.size();
+  std::vector<std::uint32_t> heights(count);
+  std::uint32_t highest = 0;
+  for (std::size_t n = count; n-- > 0;) { // children come after their parents
+    for (const std::uint32_t child : hierarchy.nodes[n].child)
+      if ((child & BvhNode::leaf) == 0) heights[n] = std::max(heights[n], heights[child] + 1);
+    highest = std::max(highest, heights[n]);
+  }
+  vertices.levels.push_back(0);
+  for (std::uint32_t height = 0; height <= highest; ++height) {
+    for (std::uint32_t n = 0; n < count; ++n)
+      if (heights[n] == height) vertices.nodes.push_back(n);
+    vertices.levels.push_back(std::uint32_t(vertices.nodes.size()));
   }
 }
 
 } // namespace
 
-BoundingVolumeHierarchy build_bounding_volume_hierarchy(const TriangleMesh &mesh) {
+BoundingVolumeHierarchy build_bounding_volume_hierarchy(const TriangleMesh &mesh, bool deforms) {
   try {
     BoundingVolumeHierarchy hierarchy;
     std::vector<std::uint64_t> keys;
     hierarchy.triangles = sorted_triangles(mesh, keys);
     hierarchy.binary = build_binary(keys, hierarchy.triangles);
     build_query_tree(hierarchy);
-    build_features(hierarchy);
+    const std::vector<std::uint32_t> ring = build_features(hierarchy);
+    if (deforms) name_vertices(hierarchy, mesh, keys, ring);
     return hierarchy;
   } catch (const std::bad_alloc &) {
     throw Error(LOAM_ERROR_OUT_OF_MEMORY, format("no memory for the hierarchy of %zu triangles", mesh.indices.size() / 3));

@@ -31,10 +31,18 @@ struct BoundingVolumeHierarchy {
   std::vector<BvhTriangle> triangles;  // in the order of the tree's leaves
   std::vector<BvhFeatures> features;   // one a triangle
   std::vector<Vec3<float>> ring;       // see BvhFeatures
+
+  // Where the mesh's vertices may move; otherwise empty.
+  struct Vertices {
+    std::vector<Vec3<float>> positions;
+    std::vector<std::uint32_t> of_triangles, of_ring; // three a triangle, one a place in the ring
+    std::vector<std::uint32_t> nodes;                 // children before their parents, level by level
+    std::vector<std::uint32_t> levels;                // where each begins in `nodes`, and where the last ends
+  } vertices;
 };
 
 // A linear bounding volume hierarchy: triangles sorted along a Morton curve, the binary radix tree of their codes on top. Throws
 // Error OUT_OF_MEMORY.
-BoundingVolumeHierarchy build_bounding_volume_hierarchy(const TriangleMesh &mesh);
+BoundingVolumeHierarchy build_bounding_volume_hierarchy(const TriangleMesh &mesh, bool deforms = false);
 
 } // namespace loam

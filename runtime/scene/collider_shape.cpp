@@ -126,7 +126,7 @@ ColliderShape make_shape(const loam_collider_def &def, loam_collider_report &rep
   case LOAM_COLLIDER_MESH: {
     const TriangleMesh mesh = make_triangle_mesh(def.mesh, "mesh");
     report = mesh.report;
-    return build_bounding_volume_hierarchy(mesh);
+    return build_bounding_volume_hierarchy(mesh, def.deforms == 1);
   }
   case LOAM_COLLIDER_SPHERE:
     check_above("radius", double(def.radius), 0, greatest_length);

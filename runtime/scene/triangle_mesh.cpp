@@ -22,13 +22,7 @@ void check(const loam_mesh &mesh, const char *field) {
     throw Error(LOAM_ERROR_INVALID_ARGUMENT,
                 format("%s.triangle_count is %u, must be at most %u", field, mesh.triangle_count, max_triangles));
   }
-  for (std::size_t i = 0; i < std::size_t(mesh.vertex_count) * 3; ++i) {
-    const float value = mesh.positions[i];
-    if (!(std::fabs(value) <= max_coordinate)) {
-      throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("%s.positions[%zu] (vertex %zu) is %g, must be finite and within +-%g",
-                                                      field, i, i / 3, double(value), double(max_coordinate)));
-    }
-  }
+  check_vertices(mesh.positions, mesh.vertex_count, format("%s.positions", field).c_str());
   for (std::size_t i = 0; i < std::size_t(mesh.triangle_count) * 3; ++i) {
     if (mesh.indices[i] >= mesh.vertex_count) {
       throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("%s.indices[%zu] (triangle %zu) is %u, must be under vertex_count, %u",
@@ -160,6 +154,16 @@ TriangleMesh clean(const loam_mesh &source, const char *field) {
 }
 
 } // namespace
+
+void check_vertices(const float *positions, std::uint32_t vertex_count, const char *field) {
+  for (std::size_t i = 0; i < std::size_t(vertex_count) * 3; ++i) {
+    const float value = positions[i];
+    if (!(std::fabs(value) <= max_coordinate)) {
+      throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("%s[%zu] (vertex %zu) is %g, must be finite and within +-%g", field, i,
+                                                      i / 3, double(value), double(max_coordinate)));
+    }
+  }
+}
 
 TriangleMesh make_triangle_mesh(const loam_mesh &mesh, const char *field) {
   check(mesh, field);

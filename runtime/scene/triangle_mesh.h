@@ -18,6 +18,9 @@ struct TriangleMesh {
   std::string first_flaw; // names the first open or non-manifold edge, for messages; empty if closed
 };
 
+// Throws Error INVALID_ARGUMENT naming `field`, index and value of what is not finite or too large.
+void check_vertices(const float *positions, std::uint32_t vertex_count, const char *field);
+
 // Copies and checks. `field` names the mesh in messages, such as "mesh" or "region.mesh". Throws Error INVALID_ARGUMENT for null arrays,
 // NaN vertices, indices out of range; INVALID_MESH if no usable triangle is left.
 TriangleMesh make_triangle_mesh(const loam_mesh &mesh, const char *field);

@@ -398,6 +398,11 @@ const loam_material_def &loam_world::material(loam_material_id id) const { retur
 loam_collider_id loam_world::create_collider(const loam_collider_def &def) {
   check_reserved("reserved", def.reserved);
   check_choice("reaction", def.reaction, 1);
+  check_choice("deforms", def.deforms, 1);
+  check_reserved("reserved_2", def.reserved_2);
+  if (def.deforms == 1 && def.kind != LOAM_COLLIDER_MESH)
+    throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("deforms is 1 and kind is %u; only a MESH (%u) deforms", def.kind,
+                                                    static_cast<unsigned>(LOAM_COLLIDER_MESH)));
   Collider collider;
   collider.asks_reaction = def.reaction == 1;
   collider.law = make_contact_law(def.friction, def.restitution, def.stick);
@@ -412,6 +417,7 @@ loam_collider_id loam_world::create_collider(const loam_collider_def &def) {
   // Once checked, they can be read.
   const bool has_mesh = def.kind == LOAM_COLLIDER_MESH || def.kind == LOAM_COLLIDER_HULL;
   collider.mesh = has_mesh ? mesh_fingerprint(def.mesh) : 0;
+  collider.vertex_count = def.deforms == 1 ? def.mesh.vertex_count : 0;
   collider.grid = def.kind == LOAM_COLLIDER_GRID ? grid_fingerprint(def.grid) : 0;
   return colliders_.add(collider);
 }
@@ -429,6 +435,18 @@ void loam_world::pose_collider(loam_collider_id id, const float position[3], con
   if (!at_once) return;
   collider.pose = collider.target;
   input_.wake = true;
+}
+
+void loam_world::move_vertices(loam_collider_id id, const float *positions, std::uint32_t vertex_count, bool at_once) {
+  const Collider &collider = colliders_.at(id, "collider");
+  if (collider.def.deforms == 0)
+    throw Error(LOAM_ERROR_INVALID_ARGUMENT, "collider was made with deforms 0: its vertices stay");
+  if (vertex_count != collider.vertex_count)
+    throw Error(LOAM_ERROR_INVALID_ARGUMENT,
+                format("vertex_count is %u; the collider's mesh has %u vertices", vertex_count, collider.vertex_count));
+  check_vertices(positions, vertex_count, "positions");
+  backend_->move_vertices(collider.shape, positions, at_once);
+  if (at_once) input_.wake = true;
 }
 
 void loam_world::set_contact(loam_collider_id id, loam_material_id material, const loam_collider_contact *contact) {

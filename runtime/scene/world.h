@@ -56,6 +56,7 @@ public:
   loam_collider_id create_collider(const loam_collider_def &def);
   void destroy_collider(loam_collider_id id);
   void pose_collider(loam_collider_id id, const float position[3], const float rotation[4], bool at_once);
+  void move_vertices(loam_collider_id id, const float *positions, std::uint32_t vertex_count, bool at_once);
   void set_contact(loam_collider_id id, loam_material_id material, const loam_collider_contact *contact);
   loam_collider_contact contact(loam_collider_id id, loam_material_id material) const;
   loam_collider_reaction collider_reaction(loam_collider_id id) const;
@@ -110,12 +111,14 @@ private:
     loam_collider_report report{};
     loam_collider_def def{};          // without mesh and grid
     std::uint64_t mesh = 0, grid = 0; // their fingerprints
+    std::uint32_t vertex_count = 0;   // of a mesh that deforms
   };
   struct Moving; // what a snapshot brings of the scene
   Moving moving() const;
   template <class Fields> void exchange(Fields &fields, Moving &moving) const;
   void write(loam::SnapshotWriter &writer);
   void check(const Moving &moving) const;
+  void list_vertices(std::vector<loam::StateSection> &state);
   void check_state(const loam::SnapshotReader &snapshot, const std::vector<loam::StateSection> &state,
                    std::uint64_t next_id) const;
   std::uint64_t count_streams();

@@ -236,6 +236,7 @@ template <class Fields> void loam_world::exchange(Fields &fields, Moving &moving
     for (const float half_extent : c->def.half_extents) fields.same("half_extents", half_extent);
     fields.same("fingerprint of the mesh", c->mesh);
     fields.same("fingerprint of the grid", c->grid);
+    fields.same("deforms", c->def.deforms);
     fields.value(moving.colliders[i].pose);
     fields.value(moving.colliders[i].target);
   }
@@ -375,6 +376,13 @@ void loam_world::check(const Moving &moving) const {
     if (killers_.at_slot(i) != nullptr) check_pose(moving.killers[i].pose);
 }
 
+// Those of meshes that deform are named by the colliders' slots.
+void loam_world::list_vertices(std::vector<StateSection> &state) {
+  for (std::size_t i = 0; i < colliders_.size(); ++i)
+    if (const Collider *c = colliders_.at_index(i); c != nullptr && c->def.deforms == 1)
+      backend_->list_vertices(c->shape, static_cast<std::uint32_t>(i), state);
+}
+
 // ------------------------------------------------------------------------------------------------------- saving ---
 
 void loam_world::write(SnapshotWriter &writer) {
@@ -388,6 +396,7 @@ void loam_world::write(SnapshotWriter &writer) {
   header.field_bytes = writer.bytes() - sizeof header;
   std::vector<StateSection> state = backend_->state(backend_->particle_count());
   cloths_.list_state(backend_->cloth(), moving.cloths, state);
+  list_vertices(state);
   for (const StateSection &section : state) writer.section(section, read);
   std::memcpy(header.magic, "LOAMSNAP", 8);
   header.version = LOAM_SNAPSHOT_VERSION;
@@ -444,6 +453,13 @@ void loam_world::check_state(const SnapshotReader &snapshot, const std::vector<S
       if (snapshot.find(section.kind, section.object) == nullptr)
         invalid(format("lacks state of kind %u", unsigned(section.kind)));
 
+  for (const StateKind kind : {StateKind::collider_vertices, StateKind::collider_targets})
+    for (const StateSection &section : state)
+      if (section.kind == kind)
+        for (const SnapshotReader::Column &axis : snapshot.find(kind, section.object)->columns)
+          for (std::uint64_t i = 0; i < section.count; ++i)
+            if (!(std::abs(float_of(axis.at(i))) <= 1e8f)) invalid("has a collider with a vertex that is nowhere");
+
   const auto column = [&](StateKind kind, std::size_t c) { return snapshot.find(kind, 0)->columns[c]; };
   const SnapshotReader::Column materials = column(StateKind::materials, 0), ids = column(StateKind::ids, 0),
                                volumes = column(StateKind::rest_volumes, 0), masses = column(StateKind::velocities, 3);
@@ -475,6 +491,7 @@ void loam_world::restore(const std::byte *memory, std::uint64_t bytes) {
   const std::uint64_t particles = snapshot.particles();
   std::vector<StateSection> state = backend_->state(std::min<std::uint64_t>(particles, def_.particle_capacity));
   cloths_.list_state(backend_->cloth(), moving.cloths, state);
+  list_vertices(state);
   check_state(snapshot, state, moving.next_id);
 
   // Memory may be refused up to here and in these.

@@ -127,6 +127,8 @@ public:
   virtual void set_materials(const std::vector<SolverMaterial> &materials) = 0;
   virtual int add_shape(const ColliderShape &shape) = 0;
   virtual void remove_shape(int shape) = 0;
+  // Of a mesh that deforms: where its vertices, 3 floats each, are to be at the end of the next step, or are now.
+  virtual void move_vertices(int shape, const float *positions, bool at_once) = 0;
   virtual void add_particles(const NewParticles &particles) = 0;
   // Both throw Error and change nothing for an id that no particle has, or that is named twice. Answers how many of each material went.
   virtual std::vector<std::uint64_t> remove_particles(const std::uint32_t *ids, std::uint64_t count) = 0;
@@ -150,6 +152,8 @@ public:
   virtual void read_state(const StateSection &section, std::uint64_t first, std::size_t count, std::uint32_t *words) = 0;
   virtual void write_state(const StateSection &section, std::uint64_t first, std::size_t count,
                            const std::uint32_t *words) = 0; // whole elements
+  // Adds that of a mesh that deforms.
+  virtual void list_vertices(int shape, std::uint32_t object, std::vector<StateSection> &list) = 0;
   // After new state was written for so many particles: all that follows from it.
   virtual void adopt_state(std::uint64_t particles) = 0;
   virtual const loam_statistics &statistics() const = 0;

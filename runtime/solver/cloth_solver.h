@@ -26,6 +26,7 @@
 #include "solver/cloth_particles.h"
 #include "solver/cloth_self_contact.h"
 #include "solver/cloth_topology.h"
+#include "solver/collider_shapes.h"
 
 namespace loam {
 
@@ -77,6 +78,7 @@ public:
     const ColliderView *colliders;
     int collider_count;
     float collider_motion; // the most that a point of any collider moves
+    bool deforms;          // is there a collider whose vertices move?
     ClothParticles particles;
   };
   void find_contacts(const Substep &substep);
@@ -551,10 +553,13 @@ template <class Executor> void ClothSolver<Executor>::find_contacts(const Subste
     if (s.collider_count == 0) return;
     for (int attempt = 0; attempt < 2; ++attempt) {
       executor_.set(cloth.contact_counter.data(), 1, 0);
-      executor_.for_each(cloth.vertex_count,
-                         FindContacts{cloth.positions.data(), cloth.velocities.data(), s.colliders, s.collider_count,
-                                      s.seconds, cloth.material.thickness, cloth.reach, cloth.contacts.data(),
-                                      static_cast<int>(cloth.contacts.capacity()), cloth.contact_counter.data()});
+      with_deforming(s.deforms, [&](auto deforms) {
+        executor_.for_each(cloth.vertex_count,
+                           FindContactsOf<deforms.value>{cloth.positions.data(), cloth.velocities.data(), s.colliders,
+                                                         s.collider_count, s.seconds, cloth.material.thickness, cloth.reach,
+                                                         cloth.contacts.data(), static_cast<int>(cloth.contacts.capacity()),
+                                                         cloth.contact_counter.data()});
+      });
       cloth.contact_count = executor_.read(cloth.contact_counter.data());
       if (static_cast<std::size_t>(cloth.contact_count) <= cloth.contacts.capacity()) break;
       const auto found = static_cast<std::size_t>(cloth.contact_count);
@@ -621,9 +626,11 @@ template <class Executor> void ClothSolver<Executor>::finish(const Substep &s, i
     reactions.positions = cloth.positions.data();
     if (reactions.sums != nullptr)
       executor_.for_each(cloth.contact_count, AddReactions{cloth.contacts.data(), velocities, reactions});
-    executor_.for_each(cloth.contact_count,
-                       SweepContacts{cloth.contacts.data(), cloth.positions.data(), velocities, s.colliders,
-                                     s.collider_count, s.seconds, 0.05f * cloth.material.thickness, reactions});
+    with_deforming(s.deforms, [&](auto deforms) {
+      executor_.for_each(cloth.contact_count, SweepContactsOf<deforms.value>{
+                                                  cloth.contacts.data(), cloth.positions.data(), velocities, s.colliders,
+                                                  s.collider_count, s.seconds, 0.05f * cloth.material.thickness, reactions});
+    });
   });
 }
 

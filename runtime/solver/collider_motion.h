@@ -11,11 +11,15 @@ namespace loam {
 
 class ColliderMotion {
 public:
-  // `extent`: the greatest distance of a point of its surface from its origin; infinite for a plane.
-  void include(const ColliderView &collider, float extent) {
-    if (at_rest(collider)) return;
+  // `extent`: the greatest distance of a point of its surface from its origin; infinite for a plane. `own`: the most that such a point moves in the
+  // collider's frame.
+  void include(const ColliderView &collider, float extent, float own = 0) {
+    if (at_rest(collider)) {
+      include(own, 0);
+      return;
+    }
     const float spin = spin_of(collider);
-    include(spin > 0.0f ? shift_of(collider) + spin * extent : shift_of(collider), spin);
+    include(own + (spin > 0.0f ? shift_of(collider) + spin * extent : shift_of(collider)), spin);
   }
 
   // The most that a point of any collider moves.

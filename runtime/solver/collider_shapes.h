@@ -3,10 +3,21 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
+#include <type_traits>
 
 #include "solver/collider_shape.h"
+#include "solver/deforming_mesh.h"
 
 namespace loam {
+
+// Calls f(std::true_type) or f(std::false_type): the contact kernels of worlds where no mesh deforms do not ask for it.
+template <class F> void with_deforming(bool deforms, F &&f) {
+  if (deforms)
+    f(std::true_type());
+  else
+    f(std::false_type());
+}
 
 template <class Executor> class ColliderShapes {
 public:
@@ -20,6 +31,7 @@ public:
                      executor_.template array<Vec3<float>>(),
                      executor_.template array<HullFace>(),
                      executor_.template array<float>(),
+                     nullptr,
                      Shape{},
                      0,
                      true};
@@ -41,18 +53,49 @@ public:
     stored.ring.free();
     stored.faces.free();
     stored.values.free();
+    stored.deforming.reset();
     stored.in_use = false;
   }
 
-  const Shape &view(int shape) const { return shapes_[static_cast<std::size_t>(shape)].shape; }
   // The greatest distance of a point of the surface from the shape's origin.
-  float extent(int shape) const { return shapes_[static_cast<std::size_t>(shape)].extent; }
+  float extent(int shape) const {
+    const Stored &stored = shapes_[static_cast<std::size_t>(shape)];
+    return stored.deforming != nullptr ? stored.deforming->extent() : stored.extent;
+  }
   std::uint64_t bytes() const {
     std::uint64_t bytes = 0;
     for (const Stored &s : shapes_)
-      bytes +=
-          s.nodes.bytes() + s.packets.bytes() + s.features.bytes() + s.ring.bytes() + s.faces.bytes() + s.values.bytes();
+      bytes += s.nodes.bytes() + s.packets.bytes() + s.features.bytes() + s.ring.bytes() + s.faces.bytes() +
+               s.values.bytes() + (s.deforming != nullptr ? s.deforming->bytes() : 0);
     return bytes;
+  }
+
+  // ------------------------------------------------------------------------------------ meshes that deform ---
+
+  // Null where the shape does not.
+  DeformingMesh<Executor> *deforming(int shape) { return shapes_[static_cast<std::size_t>(shape)].deforming.get(); }
+  template <class F> void for_each_deforming(F &&f) {
+    for (Stored &stored : shapes_)
+      if (stored.deforming != nullptr) f(*stored.deforming);
+  }
+  // Does its surface move in its own frame, in this step?
+  bool moves(int shape) const {
+    const Stored &stored = shapes_[static_cast<std::size_t>(shape)];
+    return stored.deforming != nullptr && stored.deforming->moves();
+  }
+  float motion(int shape, std::uint32_t substeps) const { // the most in a substep
+    return moves(shape) ? shapes_[static_cast<std::size_t>(shape)].deforming->motion(substeps) : 0.0f;
+  }
+  // What is seen of it in a substep of this step.
+  const Shape &place(int shape, std::uint32_t index, std::uint32_t substeps) {
+    Stored &stored = shapes_[static_cast<std::size_t>(shape)];
+    if (stored.deforming != nullptr) {
+      stored.deforming->place(index, substeps, {stored.nodes, stored.packets, stored.ring});
+      stored.shape.mesh.packets = stored.packets.data();
+      stored.shape.mesh.end_packets = stored.deforming->end_packets();
+      stored.shape.mesh.motion = stored.deforming->motion(substeps);
+    }
+    return stored.shape;
   }
 
 private:
@@ -64,6 +107,7 @@ private:
     Array<Vec3<float>> ring;
     Array<HullFace> faces;
     Array<float> values;
+    std::unique_ptr<DeformingMesh<Executor>> deforming; // null: its vertices stay
     Shape shape;
     float extent;
     bool in_use;
@@ -125,7 +169,8 @@ private:
     float squared = 0;
     for (const BvhTriangle &t : mesh.triangles) squared = std::max({squared, dot(t.a, t.a), dot(t.b, t.b), dot(t.c, t.c)});
     stored.shape.kind = LOAM_COLLIDER_MESH;
-    stored.shape.mesh = {stored.nodes.data(), stored.packets.data(), stored.features.data(), stored.ring.data()};
+    stored.shape.mesh = {stored.nodes.data(), stored.packets.data(), stored.features.data(), stored.ring.data(), nullptr, 0};
+    if (!mesh.vertices.positions.empty()) stored.deforming = std::make_unique<DeformingMesh<Executor>>(executor_, mesh);
     stored.extent = square_root(squared);
   }
 

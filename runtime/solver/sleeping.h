@@ -18,7 +18,7 @@ template <class Executor> bool Solver<Executor>::all_asleep(const StepInput &inp
     ColliderView view = {};
     view.start = start;
     view.end = end;
-    if (at_rest(view)) continue;
+    if (at_rest(view) && !shapes_.moves(collider.shape)) continue;
     const float extent = shapes_.extent(collider.shape);
     const Vec3<float> way = end.position - start.position;
     executor_.for_each(count_,

@@ -40,6 +40,7 @@ public:
   void set_materials(const std::vector<SolverMaterial> &materials) override;
   int add_shape(const ColliderShape &shape) override;
   void remove_shape(int shape) override;
+  void move_vertices(int shape, const float *positions, bool at_once) override;
   void add_particles(const NewParticles &particles) override;
   std::vector<std::uint64_t> remove_particles(const std::uint32_t *ids, std::uint64_t count) override;
   void release_particles(const Release &release) override {
@@ -57,6 +58,9 @@ public:
   std::vector<StateSection> state(std::uint64_t particles) override;
   void read_state(const StateSection &section, std::uint64_t first, std::size_t count, std::uint32_t *words) override;
   void write_state(const StateSection &section, std::uint64_t first, std::size_t count, const std::uint32_t *words) override;
+  void list_vertices(int shape, std::uint32_t object, std::vector<StateSection> &list) override {
+    shapes_.deforming(shape)->list_state(object, list);
+  }
   void adopt_state(std::uint64_t particles) override;
   const loam_statistics &statistics() const override { return statistics_; }
   const Schedule &schedule(const Surroundings &surroundings) override {
@@ -119,6 +123,7 @@ private:
   std::vector<std::uint32_t> places_of(const std::uint32_t *ids, std::size_t count);
 
   // The parts of a substep, in substep.h.
+  void run_substeps(const StepInput &input);
   void substep(const StepInput &input, std::uint32_t index);
   void search_neighbours();
   void compile_schedule(const Surroundings &surroundings);
@@ -246,6 +251,7 @@ private:
   std::vector<std::uint32_t> fillers_;             // of holes
   std::vector<ColliderView> views_, views_before_; // of this substep and the one before
   ColliderMotion collider_motion_;
+  bool deforms_ = false;             // do vertices of a collider move in this substep?
   bool free_distances_hold_ = false; // what they say was true at the end of views_before_
   Array<ColliderView> collider_views_;
   Array<Contact> contacts_;
@@ -413,6 +419,11 @@ template <class Executor> void Solver<Executor>::remove_shape(int shape) {
   shapes_.remove(shape);
 }
 
+template <class Executor> void Solver<Executor>::move_vertices(int shape, const float *positions, bool at_once) {
+  if (at_once) free_distances_hold_ = false;
+  executor_.session([&] { shapes_.deforming(shape)->move(positions, at_once); });
+}
+
 template <class Executor> void Solver<Executor>::add_particles(const NewParticles &particles) {
   const auto n = static_cast<std::size_t>(particles.count), at = static_cast<std::size_t>(count_);
   if (n == 0) return;
@@ -494,7 +505,10 @@ template <class Executor> bool Solver<Executor>::drop() {
 
 template <class Executor> std::uint64_t Solver<Executor>::state_hash() {
   std::uint64_t hash = 0;
-  executor_.session([&] { hash = executor_.reduce(count_, StateHash{now_.arrays()}); });
+  executor_.session([&] {
+    hash = executor_.reduce(count_, StateHash{now_.arrays()});
+    shapes_.for_each_deforming([&](DeformingMesh<Executor> &mesh) { hash = mesh.hash(hash); });
+  });
   return cloth_.hash(StateHash::mix(hash, particles()));
 }
 

@@ -50,6 +50,7 @@ template <class Executor> void Solver<Executor>::adopt_state(std::uint64_t parti
   count_ = static_cast<int>(particles);
   awake_ = 1; // to be counted
   free_distances_hold_ = false;
+  shapes_.for_each_deforming([](DeformingMesh<Executor> &mesh) { mesh.renew(); });
   executor_.session([&] {
     executor_.for_each(count_, RestoreVolumes{now_.positions.data(), now_.log_volumes.data(), now_.rest_volumes.data()});
   });

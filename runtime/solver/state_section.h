@@ -23,7 +23,9 @@ enum class StateKind : std::uint32_t {
   displacements = 11,
   ages = 20,
   cloth_positions = 32,
-  cloth_velocities = 33
+  cloth_velocities = 33,
+  collider_vertices = 40,
+  collider_targets = 41
 };
 
 // `count` elements of `stride` words of 4 bytes each in the executor's memory, of which the first `saved` are state.

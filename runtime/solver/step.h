@@ -22,28 +22,42 @@ template <class Executor> void Solver<Executor>::step(const StepInput &input) {
   contact_laws_.prepare(input.colliders, materials_.size()); // memory may be refused from here on: no substep was done
   const auto begin = std::chrono::steady_clock::now();
   executor_.lap();
+  const auto end_deforming = [&](double share) {
+    shapes_.for_each_deforming([share](DeformingMesh<Executor> &mesh) { mesh.end_step(share); });
+  };
   executor_.session([&] {
-    reactions_.prepare(input.colliders, static_cast<double>(settings_.kernel_radius),
-                       static_cast<double>(input.seconds) / input.substeps, [this] { return greatest_mass(); });
-    fields_.prepare(input.fields, static_cast<double>(input.seconds) / input.substeps, input.substeps);
-    prepare_killers(input);
-    // Cloth cannot tell whom it touches, so nothing sleeps beside it.
-    if ((input.wake || !cloth_.empty()) && schedule_.sleep >= 0) wake_all();
-    if (count_ > 0 || !cloth_.empty() || input.source != nullptr)
-      for (std::uint32_t i = 0; i < input.substeps; ++i) {
-        if (schedule_.sleep >= 0 && fields_.wake(count_, now_.positions.data(), now_.rests.data(), i)) awake_ = 1;
-        const bool idle = schedule_.sleep >= 0 && count_ > 0 && all_asleep(input, i) && cloth_.empty();
-        if (!idle) substep(input, i);
-        if (input.source != nullptr) let_in(*input.source, static_cast<double>(input.seconds) / input.substeps);
-        ++statistics_.substeps_done;
-        statistics_.pairs = pairs_;
-        statistics_.pair_visits += pairs_ * input.iterations;
-      }
+    shapes_.for_each_deforming([](DeformingMesh<Executor> &mesh) { mesh.begin_step(); });
+    try {
+      run_substeps(input);
+    } catch (...) { // they stop with the particles, at the end of the last whole substep
+      end_deforming(static_cast<double>(statistics_.substeps_done) / input.substeps);
+      throw;
+    }
     kill(input);
     finish_statistics(input);
     reactions_.read(input.colliders);
+    end_deforming(1);
   });
   statistics_.step_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+template <class Executor> void Solver<Executor>::run_substeps(const StepInput &input) {
+  reactions_.prepare(input.colliders, static_cast<double>(settings_.kernel_radius),
+                     static_cast<double>(input.seconds) / input.substeps, [this] { return greatest_mass(); });
+  fields_.prepare(input.fields, static_cast<double>(input.seconds) / input.substeps, input.substeps);
+  prepare_killers(input);
+  // Cloth cannot tell whom it touches, so nothing sleeps beside it.
+  if ((input.wake || !cloth_.empty()) && schedule_.sleep >= 0) wake_all();
+  if (count_ == 0 && cloth_.empty() && input.source == nullptr) return;
+  for (std::uint32_t i = 0; i < input.substeps; ++i) {
+    if (schedule_.sleep >= 0 && fields_.wake(count_, now_.positions.data(), now_.rests.data(), i)) awake_ = 1;
+    const bool idle = schedule_.sleep >= 0 && count_ > 0 && all_asleep(input, i) && cloth_.empty();
+    if (!idle) substep(input, i);
+    if (input.source != nullptr) let_in(*input.source, static_cast<double>(input.seconds) / input.substeps);
+    ++statistics_.substeps_done;
+    statistics_.pairs = pairs_;
+    statistics_.pair_visits += pairs_ * input.iterations;
+  }
 }
 
 // Of what can move. Where nothing can, that of a particle of water.
@@ -206,14 +220,16 @@ template <class Executor> void Solver<Executor>::prepare_contacts(const StepInpu
   views_before_.swap(views_);
   views_.clear();
   collider_motion_ = {};
+  deforms_ = false;
   for (const ColliderState &collider : input.colliders) {
     ColliderView view = {};
     view.law = collider.law;
     view.of_materials = contact_laws_.of(views_.size());
     view.start = interpolate(collider.start, collider.end, static_cast<double>(index) / input.substeps);
     view.end = interpolate(collider.start, collider.end, static_cast<double>(index + 1) / input.substeps);
-    view.shape = shapes_.view(collider.shape);
-    collider_motion_.include(view, shapes_.extent(collider.shape));
+    view.shape = shapes_.place(collider.shape, index, input.substeps);
+    deforms_ = deforms_ || shapes_.moves(collider.shape);
+    collider_motion_.include(view, shapes_.extent(collider.shape), shapes_.motion(collider.shape, input.substeps));
     views_.push_back(view);
   }
   prepare_free_distances();
@@ -226,11 +242,14 @@ template <class Executor> void Solver<Executor>::prepare_contacts(const StepInpu
   const FreeDistances free_distances = {now_.free_distances.data(), collider_motion_.enough(stand_off + r) + 0.01f * r};
   for (int attempt = 0; attempt < 2; ++attempt) {
     executor_.set(counters_.data() + 2, 1, 0);
-    executor_.for_each(count_, FindContacts{now_.positions.data(), now_.velocities.data(), collider_views_.data(),
-                                            static_cast<int>(views_.size()), h_, stand_off, r, contacts_.data(),
-                                            static_cast<int>(contacts_.capacity()), counters_.data() + 2, free_distances,
-                                            now_.materials.data(), rest_speed,
-                                            fluids_.in_use ? 1.0f : 0.25f}); // a wall counts in a fluid's density
+    with_deforming(deforms_, [&](auto deforms) {
+      executor_.for_each(count_,
+                         FindContactsOf<deforms.value>{now_.positions.data(), now_.velocities.data(), collider_views_.data(),
+                                                       static_cast<int>(views_.size()), h_, stand_off, r, contacts_.data(),
+                                                       static_cast<int>(contacts_.capacity()), counters_.data() + 2,
+                                                       free_distances, now_.materials.data(), rest_speed,
+                                                       fluids_.in_use ? 1.0f : 0.25f}); // a wall counts in a fluid's density
+    });
     contact_count_ = executor_.read(counters_.data() + 2);
     if (static_cast<std::size_t>(contact_count_) <= contacts_.capacity()) break;
     const auto found = static_cast<std::size_t>(contact_count_);

@@ -136,9 +136,11 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
 
 template <class Executor> void Solver<Executor>::sweep_contacts(const Reactions &reactions) {
   const float margin = 0.05f * 0.5f * settings_.kernel_radius;
-  executor_.for_each(contact_count_,
-                     SweepContacts{contacts_.data(), now_.positions.data(), now_.velocities.data(), collider_views_.data(),
-                                   static_cast<int>(views_.size()), h_, margin, reactions});
+  with_deforming(deforms_, [&](auto deforms) {
+    executor_.for_each(contact_count_, SweepContactsOf<deforms.value>{
+                                           contacts_.data(), now_.positions.data(), now_.velocities.data(),
+                                           collider_views_.data(), static_cast<int>(views_.size()), h_, margin, reactions});
+  });
 }
 
 template <class Executor> typename Solver<Executor>::ClothSubstep Solver<Executor>::cloth_substep(const StepInput &input) {
@@ -148,6 +150,7 @@ template <class Executor> typename Solver<Executor>::ClothSubstep Solver<Executo
           collider_views_.data(),
           static_cast<int>(views_.size()),
           collider_motion_.greatest(),
+          deforms_,
           {now_.positions.data(), now_.velocities.data(), count_, static_cast<int>(settings_.particle_capacity),
            settings_.kernel_radius}};
 }

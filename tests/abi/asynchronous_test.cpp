@@ -225,6 +225,8 @@ TEST_F(SmallWorld, EveryFunctionSaysWhetherItMayBeCalledDuringAStep) {
       {"loam_collider_destroy", [&] { return loam_collider_destroy(w, collider_); }},
       {"loam_collider_move", [&] { return loam_collider_move(w, collider_, vector, vector); }},
       {"loam_collider_place", [&] { return loam_collider_place(w, collider_, vector, vector); }},
+      {"loam_collider_move_vertices", [&] { return loam_collider_move_vertices(w, collider_, vector, 1); }},
+      {"loam_collider_place_vertices", [&] { return loam_collider_place_vertices(w, collider_, vector, 1); }},
       {"loam_collider_get_report", [&] { return loam_collider_get_report(w, collider_, &report); }},
       {"loam_collider_get_reaction", [&] { return loam_collider_get_reaction(w, collider_, nullptr); }},
       {"loam_collider_set_contact", [&] { return loam_collider_set_contact(w, collider_, 0, nullptr); }},

@@ -457,5 +457,59 @@ TEST_F(Colliders, MovingPushesAndPlacingDoesNot) {
   }
 }
 
+TEST_F(Colliders, OnlyAMeshDeforms) {
+  const meshes::Mesh ball = meshes::icosphere(0.1f, 1);
+  loam_collider_def def = of_mesh(ball);
+  EXPECT_EQ(def.deforms, 0u);
+  def.deforms = 2;
+  refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"deforms", "2"});
+  def.deforms = 1;
+  def.reserved_2 = 3;
+  refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"reserved_2", "3"});
+  def.reserved_2 = 0;
+  for (const std::uint32_t kind : {LOAM_COLLIDER_PLANE, LOAM_COLLIDER_HULL, LOAM_COLLIDER_SPHERE}) {
+    def.kind = kind;
+    refuses(LOAM_ERROR_INVALID_ARGUMENT, def, {"deforms", "kind"});
+  }
+}
+
+TEST_F(Colliders, VerticesAreChecked) {
+  const meshes::Mesh ball = meshes::icosphere(0.1f, 1); // 42 vertices
+  loam_collider_def def = of_mesh(ball);
+  loam_collider_id rigid = 0, soft = 0;
+  ASSERT_EQ(loam_collider_create(world(), &def, &rigid), LOAM_OK);
+  const std::uint64_t before = world_.memory_bytes();
+  def.deforms = 1;
+  ASSERT_EQ(loam_collider_create(world(), &def, &soft), LOAM_OK);
+  EXPECT_GT(world_.memory_bytes(), before);
+  ASSERT_EQ(loam_collider_destroy(world(), soft), LOAM_OK);
+  EXPECT_EQ(world_.memory_bytes(), before);
+  ASSERT_EQ(loam_collider_create(world(), &def, &soft), LOAM_OK);
+  const float *good = ball.positions.data();
+  for (auto *move : {&loam_collider_move_vertices, &loam_collider_place_vertices}) {
+    invalid({"world is null"}, [&] { return move(nullptr, soft, good, 42); });
+    invalid({"positions is null"}, [&] { return move(world(), soft, nullptr, 42); });
+    invalid({"deforms 0"}, [&] { return move(world(), rigid, good, 42); });
+    for (const std::uint32_t wrong : {0u, 41u, 43u, ~0u})
+      invalid({"vertex_count is " + std::to_string(wrong), "42"}, [&] { return move(world(), soft, good, wrong); });
+    for (const float bad : {nan, infinity, -infinity, 1e9f}) {
+      meshes::Mesh broken = ball;
+      broken.positions[77] = bad;
+      invalid({"positions[77]", "vertex 25"}, [&] { return move(world(), soft, broken.positions.data(), 42); });
+    }
+    EXPECT_EQ(scenes::outcome(move(world(), soft, good, 42)), "LOAM_OK");
+  }
+  // One point, and then something again.
+  const std::vector<float> nothing(126, 0.05f);
+  ASSERT_EQ(loam_collider_move_vertices(world(), soft, nothing.data(), 42), LOAM_OK);
+  world_.step(1e-3f);
+  ASSERT_EQ(loam_collider_move_vertices(world(), soft, good, 42), LOAM_OK);
+  world_.step(1e-3f);
+  EXPECT_EQ(world_.statistics().non_finite, 0u);
+  ASSERT_EQ(loam_collider_destroy(world(), soft), LOAM_OK);
+  for (const loam_collider_id bad : {soft, loam_collider_id(0), loam_collider_id(material_)})
+    refused(LOAM_ERROR_INVALID_HANDLE, {"collider"}, [&] { return loam_collider_move_vertices(world(), bad, good, 42); });
+}
+
 } // namespace
 } // namespace loam

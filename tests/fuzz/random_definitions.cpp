@@ -254,6 +254,7 @@ loam_collider_def random_collider(Random &random, float r, ColliderArrays &array
   case LOAM_COLLIDER_MESH:
     arrays.mesh = random.chance(0.5) ? random_flawed_mesh(random, r) : random_solid(random, r);
     def.mesh = arrays.mesh.view();
+    def.deforms = random.chance(0.6) ? 1 : 0;
     break;
   case LOAM_COLLIDER_HULL:
     arrays.mesh = random_hull(random, r);
@@ -290,7 +291,7 @@ void spoil(loam_collider_def &def, Random &random, ColliderArrays &arrays) {
     def.kind = LOAM_COLLIDER_GRID + 1 + random.below(3);
     break;
   case 5:
-    (random.chance(0.5) ? def.reserved : def.reaction) = 2;
+    (random.chance(0.3) ? def.reserved : random.chance(0.5) ? def.deforms : def.reaction) = 2;
     break;
   case 6:
     def.struct_size = random.chance(0.5) ? 4 : std::uint32_t(sizeof def) + 8;

@@ -134,6 +134,7 @@ void Session::step_for(float seconds, bool in_the_background) {
     for (Collider &collider : now_.colliders) {
       std::copy(collider.target_position, collider.target_position + 3, collider.position);
       std::copy(collider.target_rotation, collider.target_rotation + 4, collider.rotation);
+      collider.vertices = collider.target_vertices;
     }
     check_after_step(seconds, speed);
   }
@@ -165,7 +166,13 @@ double Session::greatest_collider_speed(float seconds) const {
     }
     const double angle = 2 * std::acos(std::min(1.0, std::fabs(cosine) / (lengths[0] * lengths[1]))) + 1e-6;
     const double reach = greatest_distance(collider.position) + moved + 2 * limit;
-    greatest = std::max(greatest, (moved + angle * reach) / double(seconds));
+    double own = 0;
+    for (std::size_t i = 0; i < collider.vertices.size(); i += 3) {
+      const float *from = &collider.vertices[i], *to = &collider.target_vertices[i];
+      own = std::max(own, std::hypot(double(to[0]) - double(from[0]), double(to[1]) - double(from[1]),
+                                     double(to[2]) - double(from[2])));
+    }
+    greatest = std::max(greatest, (moved + angle * reach + own) / double(seconds));
   }
   return greatest;
 }
@@ -279,6 +286,7 @@ void Session::act(Random &random) {
                                        {7, &Session::create_collider},
                                        {3, &Session::destroy_collider},
                                        {20, &Session::pose_collider},
+                                       {12, &Session::deform_collider},
                                        {8, &Session::fill},
                                        {8, &Session::add},
                                        {4, &Session::map},

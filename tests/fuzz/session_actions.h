@@ -29,6 +29,7 @@ struct Collider {
   loam_collider_id id;
   float position[3], rotation[4];               // where it is
   float target_position[3], target_rotation[4]; // where it will be after the next step
+  std::vector<float> vertices, target_vertices; // the same of its vertices, if it deforms
 };
 
 struct Material {
@@ -104,6 +105,7 @@ private:
   void create_collider(Random &random);
   void destroy_collider(Random &random);
   void pose_collider(Random &random);
+  void deform_collider(Random &random);
   void fill(Random &random);
   void add(Random &random);
   void map(Random &random);

@@ -1,6 +1,8 @@
 /* Materials, colliders and particles come, change and go. */
 #include "session_actions.h"
 
+#include <limits>
+
 namespace loam::fuzz {
 
 namespace {
@@ -98,6 +100,7 @@ void Session::create_collider(Random &random) {
   collider.id = id;
   for (float *place : {collider.position, collider.target_position}) std::copy(def.position, def.position + 3, place);
   for (float *turn : {collider.rotation, collider.target_rotation}) std::copy(def.rotation, def.rotation + 4, turn);
+  if (def.deforms == 1) collider.vertices = collider.target_vertices = arrays.mesh.positions;
   now_.colliders.push_back(collider);
   ++description_;
   loam_collider_report found = {};
@@ -141,6 +144,37 @@ void Session::pose_collider(Random &random) {
   if (!teleport) return;
   std::copy(position, position + 3, collider.position);
   std::copy(rotation, rotation + 4, collider.rotation);
+}
+
+/* A little, wildly, to a point, or to where it is; badly at times. */
+void Session::deform_collider(Random &random) {
+  if (now_.colliders.empty()) return;
+  Collider &collider = any(now_.colliders, random);
+  std::vector<float> to = collider.vertices;
+  const float r = def_.kernel_radius, wild = random.chance(0.2) ? 4 : random.log_between(0.01, 1);
+  const bool collapses = random.chance(0.05), stays = random.chance(0.1), at_once = random.chance(0.2);
+  float scale[3];
+  for (float &s : scale) s = random.chance(0.5) ? 1 : random.between(0.5f, 1.6f);
+  for (std::size_t i = 0; i < to.size() && !stays; ++i)
+    to[i] = collapses ? r : scale[i % 3] * to[i] + wild * r * random.between(-1, 1);
+  for (const float x : to)
+    if (!(std::fabs(x) <= 1e8f)) return; // grown too large
+  if (to.empty()) to.resize(9);
+  auto count = std::uint32_t(to.size() / 3);
+  Expect expect = collider.vertices.empty() ? Expect::invalid : Expect::success;
+  if (random.chance(0.05)) {
+    expect = Expect::invalid;
+    if (random.chance(0.5))
+      to[random.below(to.size())] = std::numeric_limits<float>::quiet_NaN();
+    else
+      count += random.chance(0.5) ? 1 : ~0u;
+  }
+  const auto move = at_once ? loam_collider_place_vertices : loam_collider_move_vertices;
+  if (!call(at_once ? "place vertices" : "move vertices", expect,
+            [&] { return move(world_, collider.id, to.data(), count); }))
+    return;
+  collider.target_vertices = to;
+  if (at_once) collider.vertices = to;
 }
 
 // ------------------------------------------------------------------------------------------------------- particles ---

@@ -47,7 +47,7 @@ struct ContactScene {
     const BoundingVolumeHierarchy &h = *hierarchies.back();
     Shape shape{};
     shape.kind = LOAM_COLLIDER_MESH;
-    shape.mesh = {h.nodes.data(), h.packets.data(), h.features.data(), h.ring.data()};
+    shape.mesh = {h.nodes.data(), h.packets.data(), h.features.data(), h.ring.data(), nullptr, 0};
     return add_shape(shape, friction, pose);
   }
   int add_shape(const Shape &shape, float friction, Pose pose = {{0, 0, 0}, {0, 0, 0, 1}}) {

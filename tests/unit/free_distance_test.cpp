@@ -22,7 +22,7 @@ using test::turn;
 constexpr float radius = 0.01f;
 constexpr Pose at_origin = {{0, 0, 0}, {0, 0, 0, 1}};
 
-// A block of sand falls into a bowl; a paddle sweeps through, a plate comes, is placed elsewhere, and goes.
+// A block of sand falls into a bowl; a paddle that also stretches sweeps through, a plate comes, is placed elsewhere, and goes.
 class Scene {
 public:
   Scene(bool keep, unsigned threads) {
@@ -38,7 +38,7 @@ public:
     input_.gravity = {0, -9.81f, 0};
     add_block({0, 0, 0});
     bowl_ = add_mesh(test::icosphere_mesh(0.12f, 3), at_origin);
-    paddle_ = add_mesh(test::box_mesh({0.005f, 0.04f, 0.08f}), {{-0.08f, -0.03f, 0}, {0, 0, 0, 1}});
+    paddle_ = add_mesh(blade_, {{-0.08f, -0.03f, 0}, {0, 0, 0, 1}}, true);
     input_.colliders.push_back({backend_->add_shape(PlaneShape{}), {0.5f, 0, 0}, at_origin, at_origin});
     place(2, {{0, -0.11f, 0}, {0, 0, 0, 1}});
   }
@@ -49,6 +49,11 @@ public:
       paddle.position.x += s < 25 ? 0.004f : 0.0f;
       paddle.rotation = s < 20 ? multiply(turn({0, 1, 0.3f}, 0.1f), paddle.rotation) : paddle.rotation;
       input_.colliders[1].end = paddle;
+      if (s % 4 != 3) {
+        MeshData blade = blade_;
+        for (Vec3<float> &v : blade.vertices) v = {v.x, (1 + 0.1f * float(s % 4)) * v.y, v.z + 0.1f * v.y * float(s % 3)};
+        backend_->move_vertices(paddle_, &blade.vertices[0].x, s == 22);
+      }
       input_.colliders[2].end = {{0, -0.11f + (s < 10 ? 0.001f * float(s) : 0.01f), 0},
                                  s < 30 ? turn({0, 0, 1}, 0.0f) : turn({0, 0, 1}, 0.002f)};
       if (s == 8) plate_ = add_mesh(test::floor_mesh(0.05f, 6), {{0, 0.05f, 0}, {0, 0, 0, 1}});
@@ -82,8 +87,8 @@ private:
     particles.count = 1000;
     backend_->add_particles(particles);
   }
-  int add_mesh(const MeshData &data, const Pose &pose) {
-    const int mesh = backend_->add_shape(build_bounding_volume_hierarchy(make_triangle_mesh(data.view(), "mesh")));
+  int add_mesh(const MeshData &data, const Pose &pose, bool deforms = false) {
+    const int mesh = backend_->add_shape(build_bounding_volume_hierarchy(make_triangle_mesh(data.view(), "mesh"), deforms));
     input_.colliders.push_back({mesh, {0.5f, 0, 0}, pose, pose});
     return mesh;
   }
@@ -91,6 +96,7 @@ private:
     input_.colliders[collider].start = input_.colliders[collider].end = pose;
   }
 
+  const MeshData blade_ = test::box_mesh({0.005f, 0.04f, 0.08f});
   std::unique_ptr<Backend> backend_;
   StepInput input_{};
   int bowl_ = -1, paddle_ = -1, plate_ = -1;

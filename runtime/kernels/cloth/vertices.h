@@ -1,4 +1,4 @@
-// The per-vertex stages of a cloth: attachments, the greatest speed, the move, normals, the state hash.
+// The per-vertex stages of a cloth: attachments, the greatest speed, the move, normals.
 #pragma once
 
 #include "kernels/contact/collider_view.h"
@@ -101,21 +101,6 @@ struct ComputeNormals {
     const float scale = size > 0.0f ? 1.0f / size : 0.0f;
     normals[i] = {scale * sum.x, scale * sum.y, scale * sum.z, 0.0f};
   }
-};
-
-struct HashRows {
-  using Value = std::uint64_t;
-  const Row *rows;
-  LOAM_FN static Value identity() { return 0; }
-  LOAM_FN Value operator()(int i) const {
-    std::uint64_t h = StateHash::mix(0x13198A2E03707344ull, static_cast<std::uint64_t>(i));
-    const Row r = rows[i];
-    h = StateHash::mix(h, StateHash::bits(r.x));
-    h = StateHash::mix(h, StateHash::bits(r.y));
-    h = StateHash::mix(h, StateHash::bits(r.z));
-    return StateHash::mix(h, StateHash::bits(r.w));
-  }
-  LOAM_FN static Value combine(Value a, Value b) { return a + b; }
 };
 
 } // namespace loam

@@ -65,7 +65,8 @@ struct PlaneList {
   }
 };
 
-struct FindContacts {
+// `Deforms`: there is a mesh whose vertices move. Worlds without pay nothing for it.
+template <bool Deforms> struct FindContactsOf {
   const Row *positions;  // at the start of the substep
   const Row *velocities; // w is the inverse mass; 0: pinned, has no contacts
   const ColliderView *colliders;
@@ -131,8 +132,9 @@ private:
     Vec3<float> shift; // where the collider would carry it
   };
 
-  // The half space of a contact point in the collider's frame.
-  LOAM_FN ContactPlane plane_at(const Local &local, Vec3<float> point, Vec3<float> normal, float distance) const {
+  // The half space of a contact point in the collider's frame, which moves there by `drift` in the substep.
+  LOAM_FN ContactPlane plane_at(const Local &local, Vec3<float> point, Vec3<float> normal, float distance,
+                                Vec3<float> drift = {0.0f, 0.0f, 0.0f}) const {
     const ColliderView &collider = colliders[local.collider];
     const float missing = minimum(stand_off - distance, stand_off);
     const float recovery = minimum(contact_recovery_share, substep / contact_recovery_time);
@@ -141,6 +143,11 @@ private:
     plane.normal = rotate(collider.end.rotation, normal);
     plane.gap = (missing > 0.0f ? 0.0f - recovery * missing : 0.0f - missing) - dot(plane.normal, local.shift);
     plane.surface_velocity = (1.0f / substep) * carried(collider, point);
+    if constexpr (Deforms) {
+      const Vec3<float> moved = rotate(collider.end.rotation, drift);
+      plane.gap = plane.gap - dot(plane.normal, moved);
+      plane.surface_velocity = plane.surface_velocity + (1.0f / substep) * moved;
+    }
     const ContactLaw &law = collider.of_materials == nullptr || materials == nullptr
                                 ? collider.law
                                 : collider.of_materials[materials[local.particle]];
@@ -206,13 +213,12 @@ private:
   LOAM_FN void find_mesh(int index, int particle, Vec3<float> x, PlaneList &list, float &clearance, float &free) const {
     const ColliderView &collider = colliders[index];
     const Local local = local_of(index, particle, x);
-    const float moved = length(local.shift);
+    const float moved = length(local.shift) + (Deforms ? collider.shape.mesh.motion : 0.0f);
     const float near = stand_off + expected_reach(particle) + moved, far = stand_off + reach + moved;
     const float near_squared = near * near;
 
     ClosestPoint<float> nearest = {{0.0f, 0.0f, 0.0f}, far * far, -1};
-    const TrianglePacket *nearest_packet = nullptr;
-    int nearest_lane = 0;
+    int nearest_packet = 0, nearest_lane = 0;
     bool nearest_is_listed = false;
     float radius_squared = far * far; // shrinks to the nearest point so far, but not below `near`
     float out_of_reach_squared = 1e30f;
@@ -230,13 +236,13 @@ private:
                             is_minimum(mesh, static_cast<int>(packet.first) + k, closest, local.at);
         if (closest.distance_squared < nearest.distance_squared) {
           nearest = closest;
-          nearest_packet = &packet;
+          nearest_packet = i;
           nearest_lane = k;
           nearest_is_listed = listed;
           radius_squared = maximum(near_squared, closest.distance_squared);
           query.open_squared = 0.0f; // how much farther the next surface is does not matter any more
         }
-        if (listed) add(local, packet, k, closest, false, list);
+        if (listed) add(local, i, k, closest, false, list);
       }
     }
     free = minimum(free, square_root(minimum(out_of_reach_squared, query.unvisited_squared)) -
@@ -245,7 +251,7 @@ private:
     clearance = minimum(clearance, square_root(nearest.distance_squared) - moved);
     // The nearest point is a minimum whatever rounding made of its feature. And there must be a contact for the sweep to look at, if only of a wall that
     // recedes: a fast mesh may come from where it has no minimum.
-    if (!nearest_is_listed || list.count == 0) add(local, *nearest_packet, nearest_lane, nearest, true, list);
+    if (!nearest_is_listed || list.count == 0) add(local, nearest_packet, nearest_lane, nearest, true, list);
   }
 
   LOAM_FN static bool is_minimum(const MeshShape &mesh, int triangle, const ClosestPoint<float> &closest,
@@ -262,8 +268,10 @@ private:
     return true;
   }
 
-  LOAM_FN void add(const Local &local, const TrianglePacket &packet, int lane, const ClosestPoint<float> &closest,
+  LOAM_FN void add(const Local &local, int packet_index, int lane, const ClosestPoint<float> &closest,
                    bool even_if_out_of_reach, PlaneList &list) const {
+    const MeshShape &mesh = colliders[local.collider].shape.mesh;
+    const TrianglePacket &packet = mesh.packets[packet_index];
     const float distance = square_root(closest.distance_squared);
     Vec3<float> normal;
     if (distance > 0.05f * stand_off) {
@@ -272,9 +280,37 @@ private:
       const Vec3<float> own = lane_of(packet.normal, lane);
       normal = dot(own, local.at - lane_of(packet.a, lane)) < 0.0f ? -1.0f * own : own;
     }
-    const ContactPlane plane = plane_at(local, local.at + closest.point, normal, distance);
+    Vec3<float> drift = {0.0f, 0.0f, 0.0f};
+    if (Deforms && mesh.end_packets != nullptr)
+      drift = drift_of(packet, mesh.end_packets[packet_index], lane, local.at + closest.point, closest.feature);
+    const ContactPlane plane = plane_at(local, local.at + closest.point, normal, distance, drift);
     if (plane.gap < reach || even_if_out_of_reach) list.insert(plane, local.collider);
   }
+
+  // How far a point of a triangle's feature moves with its vertices.
+  LOAM_FN static Vec3<float> drift_of(const TrianglePacket &start, const TrianglePacket &end, int lane, Vec3<float> point,
+                                      int feature) {
+    const Vec3<float> v[3] = {lane_of(start.a, lane), lane_of(start.b, lane), lane_of(start.c, lane)};
+    const Vec3<float> moved[3] = {lane_of(end.a, lane) - v[0], lane_of(end.b, lane) - v[1], lane_of(end.c, lane) - v[2]};
+    if (feature >= 3 && feature < BvhFeatures::inside) return moved[feature - 3];
+    if (feature < 3) {
+      const int to = feature < 2 ? feature + 1 : 0;
+      const Vec3<float> edge = v[to] - v[feature];
+      const float share = minimum(1.0f, maximum(0.0f, dot(point - v[feature], edge) / dot(edge, edge)));
+      return moved[feature] + share * (moved[to] - moved[feature]);
+    }
+    const Vec3<float> normal = lane_of(start.normal, lane);
+    float weights[3], sum = 0.0f;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3<float> from = v[(k + 1) % 3];
+      weights[k] = maximum(0.0f, dot(normal, cross(v[(k + 2) % 3] - from, point - from)));
+      sum += weights[k];
+    }
+    if (!(sum > 0.0f)) return moved[0];
+    return (1.0f / sum) * (weights[0] * moved[0] + (weights[1] * moved[1] + weights[2] * moved[2]));
+  }
 };
+
+using FindContacts = FindContactsOf<false>;
 
 } // namespace loam

@@ -6,6 +6,8 @@
 // (Mirtich 1996): from a point at distance D of the mesh it can go D without touching anything. There is no crossing test, hence no edge
 // to leak through and no grazing case; the answer is conservative to rounding.
 //
+// A mesh whose vertices move is passed triangle by triangle: see sweep_moving_mesh.h.
+//
 // A particle keeps a small margin from every surface, or the distance that it has if that is less; so it is always on a definite side,
 // and pressing it against a wall for ever does not bring it nearer.
 #pragma once
@@ -13,10 +15,12 @@
 #include "kernels/contact/collider_view.h"
 #include "kernels/contact/mesh_query.h"
 #include "kernels/contact/reaction.h"
+#include "kernels/contact/sweep_moving_mesh.h"
 
 namespace loam {
 
-struct SweepContacts {
+// `Deforms`: there is a mesh whose vertices move.
+template <bool Deforms> struct SweepContactsOf {
   const Contact *contacts;
   const Row *positions; // at the start of the substep
   Row *velocities;
@@ -44,10 +48,11 @@ struct SweepContacts {
       for (int pass = 0; pass < 2; ++pass) {
         for (int i = 0; i < collider_count; ++i) {
           const ColliderView &collider = colliders[i];
-          if (at_rest(collider) != (pass == 1)) continue;
+          if ((at_rest(collider) && !deforms(collider)) != (pass == 1)) continue;
           const Vec3<float> before = motion;
-          const bool shortened =
-              is_convex(collider.shape) ? keep_beyond(collider, x, motion) : keep_off(collider, x, motion);
+          const bool shortened = is_convex(collider.shape) ? keep_beyond(collider, x, motion)
+                                 : deforms(collider)       ? keep_side_of(collider, x, motion)
+                                                           : keep_off(collider, x, motion);
           if (shortened) reactions.add(i, contact.particle, row.w, (1.0f / substep) * (motion - before), false);
           changed = changed || shortened;
         }
@@ -61,6 +66,10 @@ struct SweepContacts {
   }
 
 private:
+  LOAM_FN static bool deforms(const ColliderView &collider) {
+    return Deforms && is_mesh(collider.shape) && collider.shape.mesh.end_packets != nullptr;
+  }
+
   // Solid: a particle inside may come out but not go deeper.
   LOAM_FN bool keep_beyond(const ColliderView &collider, Vec3<float> x, Vec3<float> &motion) const {
     const Vec3<float> start = to_local(collider.start, x), end = to_local(collider.end, x + motion);
@@ -81,6 +90,14 @@ private:
     const float share = free_share(collider.shape, start, way, way_length);
     if (share >= 1.0f) return false;
     motion = at_rest(collider) ? share * motion : to_world(collider.end, start + share * way) - x;
+    return true;
+  }
+
+  LOAM_FN bool keep_side_of(const ColliderView &collider, Vec3<float> x, Vec3<float> &motion) const {
+    const Vec3<float> start = to_local(collider.start, x), wanted = to_local(collider.end, x + motion) - start;
+    Vec3<float> way = wanted;
+    if (!SweepMovingMesh{collider.shape.mesh, start, {margin}}(way)) return false;
+    motion = motion + rotate(collider.end.rotation, way - wanted);
     return true;
   }
 
@@ -111,5 +128,7 @@ private:
     return good;
   }
 };
+
+using SweepContacts = SweepContactsOf<false>;
 
 } // namespace loam

@@ -38,6 +38,10 @@ struct MeshShape {
   const TrianglePacket *packets;
   const BvhFeatures *features; // one a triangle
   const Vec3<float> *ring;
+  // Where its vertices move in the substep: the packets at its end, and the most that a vertex moves. The boxes are then around all that the triangles
+  // pass. Null: they rest.
+  const TrianglePacket *end_packets;
+  float motion;
 };
 
 } // namespace loam

@@ -158,6 +158,21 @@ struct StateHash {
   LOAM_FN static Value combine(Value a, Value b) { return a + b; }
 };
 
+struct HashRows {
+  using Value = std::uint64_t;
+  const Row *rows;
+  LOAM_FN static Value identity() { return 0; }
+  LOAM_FN Value operator()(int i) const {
+    std::uint64_t h = StateHash::mix(0x13198A2E03707344ull, static_cast<std::uint64_t>(i));
+    const Row r = rows[i];
+    h = StateHash::mix(h, StateHash::bits(r.x));
+    h = StateHash::mix(h, StateHash::bits(r.y));
+    h = StateHash::mix(h, StateHash::bits(r.z));
+    return StateHash::mix(h, StateHash::bits(r.w));
+  }
+  LOAM_FN static Value combine(Value a, Value b) { return a + b; }
+};
+
 // Densities for the mapped view.
 struct ComputeDensities {
   const Row *positions, *velocities;
