@@ -32,7 +32,8 @@ private:
   double w_ = 1;
 };
 
-std::function<bool(Vector3d)> inside_of(const SceneCollider &collider, const Scene &scene) {
+// Null where it has no sides.
+Containment::Inside inside_of(const SceneCollider &collider, const Mesh *mesh, double time) {
   const double radius = collider.radius, half_height = collider.half_height;
   switch (collider.kind) {
   case LOAM_COLLIDER_PLANE:
@@ -51,11 +52,12 @@ std::function<bool(Vector3d)> inside_of(const SceneCollider &collider, const Sce
   case LOAM_COLLIDER_GRID:
     return [&field = collider.field](Vector3d p) { return field.at(p) < 0; };
   default: {
-    const Mesh &mesh = scene.meshes.at(collider.file);
-    if (!is_closed(mesh)) return {};
-    return [test = std::make_shared<InsideTest>(mesh, Vector3{}, std::array<float, 4>{0, 0, 0, 1})](Vector3d p) {
-      return test->inside(p);
-    };
+    if (!is_closed(*mesh)) return {};
+    const auto test = collider.deformations.empty()
+                          ? std::make_shared<InsideTest>(*mesh, Vector3{}, std::array<float, 4>{0, 0, 0, 1})
+                          : std::make_shared<InsideTest>(deformed(*mesh, collider.deformations, time), Vector3{},
+                                                         std::array<float, 4>{0, 0, 0, 1});
+    return [test](Vector3d p) { return test->inside(p); };
   }
   }
 }
@@ -65,7 +67,10 @@ std::function<bool(Vector3d)> inside_of(const SceneCollider &collider, const Sce
 Containment::Containment(const Scene &scene, const Particles &start) {
   const std::size_t ids = start.ids.empty() ? 0 : start.ids.back() + std::size_t(1);
   for (const SceneCollider &collider : scene.colliders) {
-    Side side{&collider, inside_of(collider, scene), collider.kind == LOAM_COLLIDER_MESH, std::vector<std::uint8_t>(ids)};
+    const auto found = scene.meshes.find(collider.file);
+    const Mesh *mesh = found != scene.meshes.end() ? &found->second : nullptr;
+    Side side{&collider, mesh, inside_of(collider, mesh, 0), collider.kind == LOAM_COLLIDER_MESH,
+              std::vector<std::uint8_t>(ids)};
     if (!side.inside) continue;
     const ToLocal to_local(collider.pose);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, start.count(), 256), [&](const auto &range) {
@@ -78,7 +83,11 @@ Containment::Containment(const Scene &scene, const Particles &start) {
 
 std::uint64_t Containment::count_outside(const Particles &particles, double time) const {
   std::vector<ToLocal> frames;
-  for (const Side &side : sides_) frames.emplace_back(pose_at(side.collider->pose, side.collider->motions, time));
+  std::vector<Inside> now;
+  for (const Side &side : sides_) {
+    frames.emplace_back(pose_at(side.collider->pose, side.collider->motions, time));
+    now.push_back(side.collider->deformations.empty() ? side.inside : inside_of(*side.collider, side.mesh, time));
+  }
   return tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, particles.count(), 256), std::uint64_t(0),
       [&](const auto &range, std::uint64_t sum) {
@@ -87,7 +96,7 @@ std::uint64_t Containment::count_outside(const Particles &particles, double time
             const Side &side = sides_[s];
             const std::uint32_t id = particles.ids[i];
             if (id >= side.within.size() || (side.within[id] != 0 && !side.both)) continue;
-            if (side.inside(frames[s](to_double(particles.positions[i]))) == (side.within[id] != 0)) continue;
+            if (now[s](frames[s](to_double(particles.positions[i]))) == (side.within[id] != 0)) continue;
             ++sum;
             break;
           }

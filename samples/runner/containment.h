@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "mesh.h"
 #include "particles.h"
 #include "scene.h"
 
@@ -13,10 +14,12 @@ namespace runner {
 
 class Containment {
 public:
+  using Inside = std::function<bool(Vector3d)>; // of a point in the collider's frame
+
   // `start` are the particles before the first step. Open meshes have no sides and take no part.
   Containment(const Scene &scene, const Particles &start);
 
-  // Particles that are now on a side of a collider where they must not be; `time` in seconds says where it has moved.
+  // Particles that are now on a side of a collider where they must not be; `time` in seconds says where it has moved and how it is deformed.
   std::uint64_t count_outside(const Particles &particles, double time) const;
   // Colliders that take part.
   std::size_t sides() const { return sides_.size(); }
@@ -24,9 +27,10 @@ public:
 private:
   struct Side {
     const SceneCollider *collider;
-    std::function<bool(Vector3d)> inside; // of a point in the collider's frame
-    bool both;                            // a mesh: coming out is as wrong as going in
-    std::vector<std::uint8_t> within;     // by particle id: was it inside at the start?
+    const Mesh *mesh;                 // as it was described; null if it has none
+    Inside inside;                    // at the start
+    bool both;                        // a mesh: coming out is as wrong as going in
+    std::vector<std::uint8_t> within; // by particle id: was it inside at the start?
   };
   std::vector<Side> sides_;
 };

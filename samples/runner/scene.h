@@ -12,6 +12,7 @@
 
 #include <loam/loam.h>
 
+#include "deformation.h"
 #include "distance_field.h"
 #include "mesh.h"
 #include "motion.h"
@@ -81,6 +82,7 @@ struct SceneCollider {
   DistanceField field; // GRID
   Pose pose;           // at the start
   std::vector<Motion> motions;
+  std::vector<Deformation> deformations; // MESH only
   std::optional<SceneHinge> hinge;
   bool moves() const { return !motions.empty() || hinge.has_value(); }
   float friction = 0, restitution = 0, stick = 0;

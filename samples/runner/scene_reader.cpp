@@ -36,6 +36,8 @@ const std::vector<std::pair<std::string_view, std::uint32_t>> collider_kinds = {
     {"plane", LOAM_COLLIDER_PLANE},     {"mesh", LOAM_COLLIDER_MESH}, {"sphere", LOAM_COLLIDER_SPHERE},
     {"capsule", LOAM_COLLIDER_CAPSULE}, {"box", LOAM_COLLIDER_BOX},   {"hull", LOAM_COLLIDER_HULL},
     {"grid", LOAM_COLLIDER_GRID}};
+const std::vector<std::pair<std::string_view, Deformation::Kind>> deformation_kinds = {
+    {"squash", Deformation::Kind::squash}, {"twist", Deformation::Kind::twist}, {"wave", Deformation::Kind::wave}};
 const std::vector<std::pair<std::string_view, Appearance>> appearances = {
     {"hidden", Appearance::hidden}, {"glass", Appearance::glass}, {"matte", Appearance::matte},
     {"wood", Appearance::wood},     {"metal", Appearance::metal}, {"glossy", Appearance::glossy}};
@@ -225,6 +227,10 @@ private:
     table.read("position", collider.pose.position);
     collider.pose.rotation = read_rotation(table);
     for (TomlTable &motion : table.tables("motions")) collider.motions.push_back(read_motion(motion));
+    for (TomlTable &deformation : table.tables("deformations"))
+      collider.deformations.push_back(read_deformation(deformation));
+    if (collider.kind != LOAM_COLLIDER_MESH && !collider.deformations.empty())
+      table.fail("deformations", "only a mesh deforms");
     table.read("friction", collider.friction);
     table.read("restitution", collider.restitution);
     table.read("stick", collider.stick);
@@ -233,7 +239,7 @@ private:
     if (collider.kind == LOAM_COLLIDER_PLANE && collider.moves())
       table.fail(collider.hinge ? "hinge" : "motions", "a plane stays where it is");
     table.read("appearance", collider.appearance, collider.kind == LOAM_COLLIDER_PLANE ? plane_appearances : appearances);
-    if (collider.appearance == Appearance::glass && collider.moves())
+    if (collider.appearance == Appearance::glass && (collider.moves() || !collider.deformations.empty()))
       table.fail("appearance", "what moves cannot be shown as glass");
     table.read("colour", collider.colour);
     table.finish();
@@ -301,6 +307,32 @@ private:
     motion.spin = degrees_per_second * std::numbers::pi / 180;
     table.finish();
     return motion;
+  }
+
+  Deformation read_deformation(TomlTable &table) {
+    Deformation deformation;
+    for (const char *key : {"kind", "amplitude", "period"}) table.require(key);
+    table.read("kind", deformation.kind, deformation_kinds);
+    table.read("axis", deformation.axis);
+    table.read("amplitude", deformation.amplitude);
+    table.read("period", deformation.period);
+    table.read("start", deformation.start);
+    if (!(length(deformation.axis) > 0)) table.fail("axis", "must not be zero");
+    deformation.axis = normalized(deformation.axis);
+    if (deformation.kind == Deformation::Kind::squash && !(std::abs(deformation.amplitude) <= 0.9f))
+      table.fail("amplitude", "must be between -0.9 and 0.9: the share by which it is squashed");
+    if (!(deformation.period > 0)) table.fail("period", "must be over 0");
+    if (!(deformation.start >= 0)) table.fail("start", "must be 0 or more");
+    if (deformation.kind == Deformation::Kind::wave) {
+      table.require("wavelength");
+      table.read("wavelength", deformation.wavelength);
+      table.read("direction", deformation.direction);
+      if (!(deformation.wavelength > 0)) table.fail("wavelength", "must be over 0");
+      if (!(length(deformation.direction) > 0)) table.fail("direction", "must not be zero");
+      deformation.direction = normalized(deformation.direction);
+    }
+    table.finish();
+    return deformation;
   }
 
   void read_cloth(TomlTable &table) {

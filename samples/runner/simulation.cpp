@@ -139,10 +139,12 @@ bool Simulation::build(std::uint64_t particle_capacity) {
     def.half_height = collider.half_height;
     for (int axis = 0; axis < 3; ++axis) def.half_extents[axis] = collider.half_extents[axis];
     if (collider.kind == LOAM_COLLIDER_GRID) def.grid = describe(collider.field);
+    def.deforms = collider.deformations.empty() ? 0 : 1;
     loam_collider_id id = 0;
     check(loam_collider_create(world, &def, &id), collider.place);
     collider_ids_.push_back(id);
   }
+  deform(0, &loam_collider_place_vertices);
 
   for (const SceneEmitter &emitter : scene_->emitters) {
     if (emitter.stream) {
@@ -255,6 +257,16 @@ void Simulation::turn_hinges(double seconds) {
   }
 }
 
+void Simulation::deform(double time, MoveVertices *move) {
+  for (std::size_t i = 0; i < scene_->colliders.size(); ++i) {
+    const SceneCollider &collider = scene_->colliders[i];
+    if (collider.deformations.empty()) continue;
+    const Mesh mesh = deformed(scene_->meshes.at(collider.file), collider.deformations, time);
+    check(move(world_.get(), collider_ids_[i], &mesh.vertices[0].x, static_cast<std::uint32_t>(mesh.vertices.size())),
+          collider.place);
+  }
+}
+
 void Simulation::step() {
   const double end = static_cast<double>(frame_ + 1) / scene_->frame_rate;
   turn_hinges(1 / scene_->frame_rate);
@@ -264,6 +276,7 @@ void Simulation::step() {
     const Pose pose = pose_at(collider.pose, collider.motions, end);
     check(loam_collider_move(world_.get(), collider_ids_[i], &pose.position.x, pose.rotation.data()), collider.place);
   }
+  deform(end, &loam_collider_move_vertices);
   release_attachments(end);
   check(loam_world_step(world_.get(), static_cast<float>(1.0 / scene_->frame_rate)), {});
   ++frame_;

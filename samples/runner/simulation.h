@@ -48,6 +48,9 @@ private:
 
   std::uint32_t emitter_of(std::uint32_t id, std::uint32_t material) const;
   void turn_hinges(double seconds);
+  using MoveVertices = decltype(loam_collider_move_vertices);
+  // Vertices go, or are placed, where they are at `time`.
+  void deform(double time, MoveVertices *move);
 
   Scene *scene_;
   std::unique_ptr<loam_world, Destroy> world_;

@@ -116,6 +116,45 @@ TEST(DeformingMesh, BoxesHoldTheTrianglesAllTheWay) {
   }
 }
 
+// Particles in a ball that is crumpled and turned in one substep, without contact planes, as fast as they like: the sweep alone keeps them inside.
+TEST(DeformingMesh, NothingGetsThroughTheSweep) {
+  const MeshData data = test::icosphere_mesh(1, 2);
+  test::Random random{7};
+  int escaped = 0, cut = 0;
+  for (int round = 0; round < 8; ++round) {
+    Mesh mesh(data);
+    MeshData to = scaled(data, random.between(0.7f, 1.3f), 0.04f, std::uint64_t(round));
+    const float turn = random.between(-0.3f, 0.3f), c = std::cos(turn), s = std::sin(turn);
+    for (Vec3<float> &v : to.vertices) v = {c * v.x - s * v.y, s * v.x + c * v.y, 0.8f * v.z};
+    mesh.deforming.move(&to.vertices[0].x, false);
+    mesh.executor.session([&] { mesh.deforming.begin_step(); });
+    mesh.place(0, 1);
+    ColliderView collider = {};
+    collider.start = {{0.1f, 0, 0}, {0, 0, 0, 1}};
+    collider.end = {{0.1f, 0.2f, 0}, {0, 0.6f, 0, 0.8f}};
+    collider.shape.kind = LOAM_COLLIDER_MESH;
+    collider.shape.mesh = {mesh.nodes.data(), mesh.packets.data(),          mesh.hierarchy.features.data(),
+                           mesh.ring.data(),  mesh.deforming.end_packets(), mesh.deforming.motion(1)};
+    meshes::Mesh end;
+    for (const Vec3<float> &v : to.vertices) end.positions.insert(end.positions.end(), {v.x, v.y, v.z});
+    end.indices = data.indices;
+    for (int k = 0; k < 250; ++k) {
+      const Vec3<float> x = to_world(collider.start, random.between(0, 0.98f) * random.direction());
+      const Vec3<float> way = random.between(0, k % 2 == 0 ? 1.5f : 0.1f) * random.direction();
+      const Row position = {x.x, x.y, x.z, 1};
+      Row velocity = {way.x, way.y, way.z, 1};
+      Contact contact = {};
+      SweepContactsOf<true>{&contact, &position, &velocity, &collider, 1, 1.0f, 0.01f}(0);
+      cut += velocity.x != way.x ? 1 : 0;
+      const Vec3<float> there = to_local(collider.end, x + xyz(velocity));
+      const double point[3] = {double(there.x), double(there.y), double(there.z)};
+      escaped += meshes::winding_number(end, point) < 0.5 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(cut, 500);
+  EXPECT_EQ(escaped, 0);
+}
+
 // A step that is given up leaves the vertices on their way.
 TEST(DeformingMesh, StopsOnItsWay) {
   const MeshData data = test::icosphere_mesh(1, 1), to = scaled(data, 2, 0, 1);

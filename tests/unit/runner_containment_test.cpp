@@ -78,4 +78,46 @@ TEST(RunnerContainment, CountsWhoIsOnTheWrongSide) {
   }
 }
 
+// A ball of radius 1 that is squashed, twisted and moved in a wave, at a quarter of the period where all is greatest.
+TEST(RunnerDeformation, SquashesTwistsAndWaves) {
+  const runner::Mesh ball = runner::make_capsule(1, 0);
+  using Kind = runner::Deformation::Kind;
+  const auto at = [&](runner::Deformation how, double time) { return runner::deformed(ball, {how}, time).vertices; };
+  const runner::Deformation squash = {.kind = Kind::squash, .axis = {0, 1, 0}, .amplitude = 0.5f, .period = 2, .start = 1};
+  const runner::Deformation twist = {.kind = Kind::twist, .axis = {0, 1, 0}, .amplitude = 90, .period = 2};
+  const runner::Deformation wave = {
+      .kind = Kind::wave, .axis = {0, 1, 0}, .amplitude = 0.1f, .period = 2, .direction = {1, 0, 0}, .wavelength = 4};
+  const std::vector<Vector3> before = at(squash, 0.9), squashed = at(squash, 1.5), twisted = at(twist, 0.5),
+                             waved = at(wave, 0.5);
+  for (std::size_t i = 0; i < ball.vertices.size(); ++i) {
+    const Vector3 p = ball.vertices[i];
+    EXPECT_EQ(before[i].x, p.x);
+    EXPECT_NEAR(squashed[i].y, 0.5f * p.y, 1e-6);
+    EXPECT_NEAR(squashed[i].z, std::sqrt(2.0f) * p.z, 1e-6);
+    EXPECT_NEAR(twisted[i].y, p.y, 1e-6);
+    EXPECT_NEAR(std::hypot(twisted[i].x, twisted[i].z), std::hypot(p.x, p.z), 1e-6);
+    EXPECT_NEAR(twisted[i].x, std::cos(1.5707963f * p.y) * p.x + std::sin(1.5707963f * p.y) * p.z, 1e-6);
+    EXPECT_NEAR(waved[i].y, p.y + 0.1f * std::cos(1.5707963f * p.x), 1e-6); // sin(90 degrees - x / 4 of a turn)
+    EXPECT_EQ(waved[i].x, p.x);
+  }
+}
+
+TEST(RunnerContainment, KnowsHowAMeshIsDeformed) {
+  runner::Scene scene;
+  scene.meshes.emplace("ball", runner::make_capsule(0.1f, 0));
+  runner::SceneCollider collider;
+  collider.kind = LOAM_COLLIDER_MESH;
+  collider.file = "ball";
+  collider.deformations.push_back({.axis = {0, 1, 0}, .amplitude = 0.5f, .period = 4});
+  scene.colliders.push_back(collider);
+  // Above the middle, beside it, and outside.
+  const std::vector<Vector3> start = {{0, 0.08f, 0}, {0.08f, 0, 0}, {0.12f, 0, 0}};
+  const runner::Containment containment(scene, at(start));
+  EXPECT_EQ(containment.count_outside(at(start), 0), 0u);
+  EXPECT_EQ(containment.count_outside(at(start), 1), 2u); // half as high, 1.4 times as wide
+  EXPECT_EQ(containment.count_outside(at({{0, 0.04f, 0}, {0.08f, 0, 0}, {0.15f, 0, 0}}), 1), 0u);
+  EXPECT_EQ(containment.count_outside(at({{0, 0.12f, 0}, {0.09f, 0, 0}, {0.12f, 0, 0}}), 3),
+            1u); // half as high again, and narrower
+}
+
 } // namespace

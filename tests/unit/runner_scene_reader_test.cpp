@@ -179,6 +179,36 @@ TEST(RunnerSceneReader, ReadsSolidsOfEveryKind) {
   expect_mentions(error("kind = \"grid\"\nfile = \"open.obj\"\nspacing = 0.1\n"), {"scene.toml:14:", "file", "not closed"});
 }
 
+TEST(RunnerSceneReader, ReadsDeformationsOfMeshes) {
+  const TemporaryFolder folder;
+  folder.write("solid.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  const std::string soft =
+      minimal +
+      "[[colliders]]\nkind = \"mesh\"\nfile = \"solid.obj\"\n" // from line 12 on
+      "deformations = [{ kind = \"squash\", amplitude = 0.3, period = 2, start = 1, axis = [0, 0, 3] },\n"
+      "                { kind = \"wave\", amplitude = 0.1, period = 1, wavelength = 0.5, direction = [0, 2, 0] }]\n";
+  const auto read = [&](const std::string &text) { return runner::read_scene(folder.write("scene.toml", text)); };
+  const runner::Scene scene = read(soft);
+  const std::vector<runner::Deformation> &found = scene.colliders[0].deformations;
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].kind, runner::Deformation::Kind::squash);
+  EXPECT_EQ(found[0].axis.z, 1.0f);
+  EXPECT_EQ(found[0].start, 1.0);
+  EXPECT_EQ(found[1].kind, runner::Deformation::Kind::wave);
+  EXPECT_EQ(found[1].direction.y, 1.0f);
+  EXPECT_EQ(found[1].wavelength, 0.5f);
+  const auto error = [&](const std::string &from, const std::string &to) {
+    return error_text([&] { read(replaced(soft, from, to)); });
+  };
+  expect_mentions(error("amplitude = 0.3", "amplitude = 1"), {"scene.toml:15:", "deformations[0].amplitude", "0.9"});
+  expect_mentions(error("period = 2", "period = 0"), {"scene.toml:15:", "deformations[0].period", "over 0"});
+  expect_mentions(error("[0, 0, 3]", "[0, 0, 0]"), {"scene.toml:15:", "deformations[0].axis"});
+  expect_mentions(error(", wavelength = 0.5", ""), {"scene.toml:16:", "wavelength"});
+  expect_mentions(error("\"squash\"", "\"squish\""), {"scene.toml:15:", "\"twist\""});
+  expect_mentions(error("kind = \"mesh\"", "kind = \"hull\""), {"deformations", "only a mesh"});
+  expect_mentions(error_text([&] { read(soft + "appearance = \"glass\"\n"); }), {"appearance", "glass"});
+}
+
 TEST(RunnerSceneReader, AnEmitterHasTheColourOfItsMaterialUnlessItHasItsOwn) {
   const TemporaryFolder folder;
   const std::string coloured =

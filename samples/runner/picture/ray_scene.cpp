@@ -110,7 +110,7 @@ RayScene::RayScene(const Scene &scene) {
     const bool glass = collider.appearance == Appearance::glass;
     const std::uint32_t id = glass ? panes_++ : static_cast<std::uint32_t>(solids_.size());
     if (!glass) solids_.push_back({collider.appearance, collider.colour, collider.pose.position, lift_off(mesh)});
-    if (!glass && collider.moves())
+    if (!glass && (collider.moves() || !collider.deformations.empty()))
       moving_.push_back({id, &collider, &mesh});
     else
       add_mesh(glass ? glass_ : opaque_, id, mesh, collider.pose, true);
@@ -173,7 +173,11 @@ void RayScene::set_frame(std::vector<float> spheres, double time) {
   for (const Moving &each : moving_) {
     const Pose pose = pose_at(each.collider->pose, each.collider->motions, time);
     solids_[each.solid].origin = pose.position;
-    replace_mesh(each.solid, *each.mesh, pose);
+    const std::vector<Deformation> &deformations = each.collider->deformations;
+    if (deformations.empty())
+      replace_mesh(each.solid, *each.mesh, pose);
+    else
+      replace_mesh(each.solid, deformed(*each.mesh, deformations, time), pose);
   }
   if (!bounds_known_) { // once: the ground's light is laid out over these bounds, and must not wander from frame to frame
     for (std::size_t i = 0; i + 3 < spheres_.size(); i += 4) {
