@@ -145,8 +145,12 @@ public:
   // The batches of one colour at once.
   template <class Stage> void for_each_constraint(int first_batch, int last_batch, const Stage &stage) {
     const auto launch = table_->constraint[IndexOf<Stage, ConstraintStages>::value];
-    in_chunks(last_batch - first_batch, 8,
-              [&](int first, int last) { launch(&stage, first_batch + first, first_batch + last); });
+    const int count = last_batch - first_batch, parts = static_cast<int>(workers_.thread_count());
+    // A part of every colour is in about the same place of the cloth.
+    const int per_chunk = std::max(1, count / (4 * parts)), chunks = (count + per_chunk - 1) / per_chunk;
+    by_part(
+        chunks, [&](unsigned part) { return static_cast<int>(part) * chunks / parts; },
+        [&](int c) { launch(&stage, first_batch + c * per_chunk, first_batch + std::min(count, (c + 1) * per_chunk)); });
   }
 
   // ---------------------------------------------------------------------------------------------------- time ---

@@ -98,13 +98,10 @@ ClothConstraintList make_hinges(const ClothMesh &mesh, std::vector<int> &order) 
     const double q1 = c01 + c02, q2 = -c01 - c03, q3 = -c02 - c04;
     const Vector sum = q1 * edge + q2 * (x[2] - x[0]) + q3 * (x[3] - x[0]), normal = first + second;
     const double size = length(normal), scale = length(first) + length(second);
-    fields.push_back(static_cast<float>(q1));
-    fields.push_back(static_cast<float>(q2));
-    fields.push_back(static_cast<float>(q3));
-    fields.push_back(static_cast<float>(2 / scale));
     // Flat to rounding is flat.
-    const double rest = size > 1e-6 * scale ? dot(sum, normal) / size : 0;
-    fields.push_back(std::fabs(rest) > 1e-5 * length(edge) ? static_cast<float>(rest) : 0.0f);
+    const double curved = size > 1e-6 * scale ? dot(sum, normal) / size : 0;
+    const double rest = std::fabs(curved) > 1e-5 * length(edge) ? curved : 0, per_root_area = std::sqrt(2 / scale);
+    for (const double field : {q1, q2, q3, rest}) fields.push_back(static_cast<float>(per_root_area * field));
   }
   return sorted(indices, fields, 4, static_cast<int>(mesh.vertices.size()), order);
 }

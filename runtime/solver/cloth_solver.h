@@ -92,8 +92,8 @@ public:
   // Ways that are not those of velocities push nothing back.
   void sweep_particles(const Substep &substep, bool pushes_back = true);
   void advance(const Substep &substep);
-  // Splits vertices of what is strained too much. Between substeps.
-  void tear();
+  // Splits vertices of what is strained too much. Between substeps; the last was so long.
+  void tear(float seconds);
   // Vertices that were split, in the last step so far; a new step begins with 0.
   std::uint64_t tear_count() const { return tears_; }
   void begin_step() { tears_ = 0; }
@@ -160,13 +160,12 @@ private:
   }
   template <class Field> void interleave(Constraints &result, const ClothConstraintList &list, int spare_vertex);
   void add_threads(Cloth &cloth, const ClothThreadList &list);
-  void tear(Cloth &cloth);
+  void tear(Cloth &cloth, float seconds);
   // The machine's arrays as the topology says, but for positions and velocities.
   void apply_topology(Cloth &cloth);
   TriangleStrains strains(Cloth &cloth, const Row *positions, const int *triangles, const Row *shapes, const int *places,
-                          const float *fields) const {
-    return {positions,           triangles, shapes, places, fields, executor_.constraint_width(), cloth.material.stretch,
-            cloth.material.shear};
+                          const float *fields, float seconds) const {
+    return {positions, triangles, shapes, places, fields, executor_.constraint_width(), cloth.material.damping / seconds};
   }
   template <class Stage> void for_each_colour(const Constraints &constraints, const Stage &stage) {
     for (std::size_t c = 0; c + 1 < constraints.batches.size(); ++c)
@@ -393,16 +392,16 @@ template <class Executor> std::vector<Row> ClothSolver<Executor>::positions(int 
 
 // --------------------------------------------------------------------------------------------------------- tearing ---
 
-template <class Executor> void ClothSolver<Executor>::tear() {
+template <class Executor> void ClothSolver<Executor>::tear(float seconds) {
   for_each_cloth([&](Cloth &cloth) {
-    if (cloth.topology != nullptr) tear(cloth);
+    if (cloth.topology != nullptr) tear(cloth, seconds);
   });
 }
 
-template <class Executor> void ClothSolver<Executor>::tear(Cloth &cloth) {
+template <class Executor> void ClothSolver<Executor>::tear(Cloth &cloth, float seconds) {
   const float bound = cloth.material.tear_strain;
   const TriangleStrains there = strains(cloth, cloth.positions.data(), cloth.triangles.data(), cloth.shapes.data(),
-                                        cloth.places.data(), cloth.membrane.fields.data());
+                                        cloth.places.data(), cloth.membrane.fields.data(), seconds);
   if (!(executor_.reduce(cloth.triangle_count, GreatestStrain{there}) > bound)) return;
   std::vector<Row> now(static_cast<std::size_t>(cloth.vertex_count));
   executor_.download(now.data(), cloth.positions.data(), now.size());
@@ -412,7 +411,7 @@ template <class Executor> void ClothSolver<Executor>::tear(Cloth &cloth) {
                             static_cast<std::size_t>(executor_.constraint_width()));
   executor_.download(fields.data(), cloth.membrane.fields.data(), fields.size());
   const TriangleStrains here = strains(cloth, now.data(), cloth.topology->corners().data(), cloth.topology->shapes().data(),
-                                       places.data(), fields.data());
+                                       places.data(), fields.data(), seconds);
   std::vector<TriangleStrain> all;
   for (int t = 0; t < cloth.triangle_count; ++t) all.push_back(here.of(t));
   std::vector<int> from;
@@ -581,6 +580,7 @@ template <class Executor> void ClothSolver<Executor>::prepare(const Substep &s, 
                     PrepareMembrane{cloth.membrane.view(),
                                     cloth.positions.data(),
                                     velocities,
+                                    cloth.material.damping / h,
                                     {wind.velocity, air * wind.drag, air * wind.lift, cloth.material.areal_density}});
     executor_.for_each(cloth.vertex_count, ApplyForces{velocities, h * s.gravity, unlimited_speed, speed_limited});
     for_each_colour(cloth.hinges, PrepareHinges{cloth.hinges.view(), cloth.positions.data()});

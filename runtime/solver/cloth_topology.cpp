@@ -226,7 +226,7 @@ ClothConstraintList ClothTopology::hinges() const {
     for (int k = 0; k < 3; ++k) v[k] = vertex_of(t[0], v[k]);
     v[3] = vertex_of(t[1], v[3]);
     if (!whole)
-      for (const int field : {0, 1, 2, 4}) list.fields[h * width + at(field)] = 0.0f; // its weights, and the sum at rest
+      for (const int field : {0, 1, 2, 3}) list.fields[h * width + at(field)] = 0.0f; // its weights, and the sum at rest
   }
   return list;
 }

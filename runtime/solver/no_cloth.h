@@ -45,7 +45,7 @@ public:
   void sweep_particles(const Substep &, bool = true) {}
   void advance(const Substep &) {}
   void begin_step() {}
-  void tear() {}
+  void tear(float) {}
   static constexpr std::uint64_t tear_count() { return 0; }
   static constexpr std::uint64_t constraint_count() { return 0; }
   static constexpr std::uint64_t vertex_count() { return 0; }

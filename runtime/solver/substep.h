@@ -128,7 +128,7 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
   lap(schedule_.advance, particles());
   if (!cloth_.empty()) {
     cloth_.advance(cloth_substep(input));
-    cloth_.tear();
+    cloth_.tear(h_);
     lap(schedule_.finish_cloth, cloth_.vertex_count());
   }
   if (schedule_.sleep >= 0 && count_ > 0) fall_asleep();

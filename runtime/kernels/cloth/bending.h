@@ -14,7 +14,7 @@
 namespace loam {
 
 template <class Real> struct Hinge {
-  Real q[4];
+  Real q[4]; // over the root of A_1 + A_2
   template <class Team> LOAM_FN static Hinge load(Team &team, const ClothConstraints &constraints, typename Team::Item i) {
     const Vec3<Real> q = team.template vector<HingeField>(constraints, i, HingeField::weight);
     return {{Real(0.0f) - (q.x + (q.y + q.z)), q.x, q.y, q.z}};
@@ -23,17 +23,6 @@ template <class Real> struct Hinge {
   LOAM_FN Vec3<Real> sum(const Vec4<Real> *rows) const {
     const Vec3<Real> from = rows[0].xyz();
     return q[1] * (rows[1].xyz() - from) + (q[2] * (rows[2].xyz() - from) + q[3] * (rows[3].xyz() - from));
-  }
-  template <class Team>
-  LOAM_FN void push(Team &team, const ClothConstraints &constraints, typename Team::Item i, Row *velocities, Vec4<Real> *v,
-                    Vec3<Real> impulse) const {
-    for (int k = 0; k < 4; ++k) {
-      const Real share = v[k].w * q[k];
-      v[k].x = v[k].x + share * impulse.x;
-      v[k].y = v[k].y + share * impulse.y;
-      v[k].z = v[k].z + share * impulse.z;
-      team.template set_row<HingeField>(constraints, i, k, velocities, v[k]);
-    }
   }
 };
 
@@ -47,14 +36,13 @@ struct PrepareHinges {
     using Real = typename Team::Real;
     const auto hinge = Hinge<Real>::load(team, constraints, i);
     Vec4<Real> x[4];
-    for (int k = 0; k < 4; ++k) x[k] = team.template row<F>(constraints, i, k, positions);
+    load_vertices<F>(team, constraints, i, positions, x);
     const Vec3<Real> edge = x[1].xyz() - x[0].xyz();
     const Vec3<Real> normal = cross(edge, x[2].xyz() - x[0].xyz()) + cross(x[3].xyz() - x[0].xyz(), edge);
     const Real size = length(normal), rest = team.template field<F>(constraints, i, F::rest);
     const auto some = size > Real(1e-18f);
     const Real scale = select(some, rest / select(some, size, Real(1.0f)), Real(0.0f));
     team.template set_vector<F>(constraints, i, F::offset, hinge.sum(x) - scale * normal);
-    team.template set_vector<F>(constraints, i, F::force, {Real(0.0f), Real(0.0f), Real(0.0f)});
   }
 };
 
@@ -68,20 +56,19 @@ struct SolveHinges {
   template <class Team> LOAM_FN void operator()(Team &team, typename Team::Item i) const {
     using F = HingeField;
     using Real = typename Team::Real;
-    const Real h(substep), tau(damping), one(1.0f);
+    const Real h(substep), k(stiffness), grown(1.0f + damping), one(1.0f);
     const auto hinge = Hinge<Real>::load(team, constraints, i);
     Vec4<Real> v[4];
-    for (int k = 0; k < 4; ++k) v[k] = team.template row<F>(constraints, i, k, velocities);
-    const Real k = Real(stiffness) * team.template field<F>(constraints, i, F::inverse_area);
+    load_vertices<F>(team, constraints, i, velocities, v);
     const Real square = (v[0].w * (hinge.q[0] * hinge.q[0]) + v[1].w * (hinge.q[1] * hinge.q[1])) +
                         (v[2].w * (hinge.q[2] * hinge.q[2]) + v[3].w * (hinge.q[3] * hinge.q[3]));
-    const Vec3<Real> moved = h * hinge.sum(v);
     const Vec3<Real> offset = team.template vector<F>(constraints, i, F::offset);
-    const Vec3<Real> force = team.template vector<F>(constraints, i, F::force);
-    const Vec3<Real> missing = k * ((offset + moved) + tau * moved) + force;
-    const Vec3<Real> change = (Real(-1.0f) / (one + (h * h) * ((one + tau) * (k * square)))) * missing;
-    team.template set_vector<F>(constraints, i, F::force, force + change);
-    hinge.push(team, constraints, i, velocities, v, h * change);
+    const Vec3<Real> missing = offset + (h * grown) * hinge.sum(v);
+    const Vec3<Real> change = (one / (one + (h * h) * (grown * (k * square)))) * missing;
+    team.template set_vector<F>(constraints, i, F::offset, offset - change);
+    const Vec3<Real> impulse = (Real(0.0f) - h * k) * change;
+    for (int n = 0; n < 4; ++n) add_velocity(v[n], (v[n].w * hinge.q[n]) * impulse);
+    store_vertices<F>(team, constraints, i, velocities, v);
   }
 };
 

@@ -24,9 +24,9 @@ struct MembraneField {
     weft_of_first, // w_v, likewise
     weft_of_second,
     area,
-    first_edge,      // 3: e1 at the start of the substep, m
-    second_edge = 8, // 3
-    force = 11,      // 3: along warp, along weft, shear; N m
+    warp,          // 3: w_u at the start of the substep
+    weft = 8,      // 3
+    answered = 11, // 3: along warp, along weft, shear: the strains that their forces answer, see membrane.h
     count = 14
   };
   static constexpr int vertices = 3;
@@ -35,14 +35,36 @@ struct MembraneField {
 // What a hinge keeps: two triangles that share an edge. See bending.h.
 struct HingeField {
   enum : int {
-    weight = 0,       // 3: of vertices 1 to 3; that of vertex 0 is minus their sum
-    inverse_area = 3, // 1 / (area of both triangles), 1/m^2
-    rest = 4,         // sum of weight times position, in the rest shape, along the normal; 0 in flat cloth
-    offset = 5,       // 3: how far the sum is from that at the start of the substep, m
-    force = 8,        // 3: N
-    count = 11
+    weight = 0, // 3: of vertices 1 to 3, over the root of both triangles' area, 1/m; that of vertex 0 is minus their sum
+    rest = 3,   // sum of weight times position, in the rest shape, along the normal; 0 in flat cloth
+    offset = 4, // 3: how far the sum is from that at the start of the substep, less what its force answers
+    count = 7
   };
   static constexpr int vertices = 4;
 };
+
+// The rows of a constraint's vertices. Written out: in a loop they would go through memory.
+template <class Field, class Team>
+LOAM_FN void load_vertices(Team &team, const ClothConstraints &constraints, typename Team::Item i, const Row *rows,
+                           Vec4<typename Team::Real> *v) {
+  v[0] = team.template row<Field>(constraints, i, 0, rows);
+  v[1] = team.template row<Field>(constraints, i, 1, rows);
+  v[2] = team.template row<Field>(constraints, i, 2, rows);
+  if constexpr (Field::vertices == 4) v[3] = team.template row<Field>(constraints, i, 3, rows);
+}
+template <class Field, class Team>
+LOAM_FN void store_vertices(Team &team, const ClothConstraints &constraints, typename Team::Item i, Row *rows,
+                            const Vec4<typename Team::Real> *v) {
+  team.template set_row<Field>(constraints, i, 0, rows, v[0]);
+  team.template set_row<Field>(constraints, i, 1, rows, v[1]);
+  team.template set_row<Field>(constraints, i, 2, rows, v[2]);
+  if constexpr (Field::vertices == 4) team.template set_row<Field>(constraints, i, 3, rows, v[3]);
+}
+
+template <class Real> LOAM_FN void add_velocity(Vec4<Real> &v, Vec3<Real> change) {
+  v.x = v.x + change.x;
+  v.y = v.y + change.y;
+  v.z = v.z + change.z;
+}
 
 } // namespace loam

@@ -32,7 +32,7 @@ struct TriangleStrains {
   const int *places;   // of the triangles' constraints: batch times width plus lane
   const float *fields; // of the constraints
   int width;
-  float stretch, shear; // stiffnesses, N/m
+  float damping; // tau / h of the last substep
 
   LOAM_FN TriangleStrain of(int i) const {
     const int *t = triangles + 3 * static_cast<long>(i);
@@ -45,16 +45,22 @@ struct TriangleStrains {
     const float size = square_root(along * along + across * across);
     const Vec3<float> direction = size > 0.0f ? (1.0f / size) * (along * u + across * v) : u;
     const float strain = shown.strain();
-    return {maximum(minimum(strain, borne(i, shown.uv).strain()), 0.2f * strain), direction};
+    return {maximum(minimum(strain, borne(i).strain()), 0.2f * strain), direction};
   }
 
 private:
-  LOAM_FN SquaredStretch borne(int i, float uv) const {
+  // From what membrane.h keeps of the multipliers.
+  LOAM_FN SquaredStretch borne(int i) const {
     const int place = places[i];
     const float *own = fields + static_cast<long>(place / width) * MembraneField::count * width + place % width;
-    const float area = own[MembraneField::area * width], *forces = own + MembraneField::force * width;
-    const float u = 1.0f - forces[0] / (stretch * area), v = 1.0f - forces[width] / (stretch * area);
-    return {u * u, v * v, shear > 0.0f ? 0.0f - forces[2 * width] / (shear * area) : uv};
+    const Vec3<float> warp = vector(own, MembraneField::warp), weft = vector(own, MembraneField::weft),
+                      answered = vector(own, MembraneField::answered);
+    const float u = 1.0f + (answered.x - damping * (length(warp) - 1.0f));
+    const float v = 1.0f + (answered.y - damping * (length(weft) - 1.0f));
+    return {u * u, v * v, answered.z - damping * dot(warp, weft)};
+  }
+  LOAM_FN Vec3<float> vector(const float *own, int field) const {
+    return {own[field * width], own[(field + 1) * width], own[(field + 2) * width]};
   }
 };
 

@@ -134,7 +134,7 @@ struct SolveThreads {
       }
       const auto vertex = team.place(threads.starts, i, j + 1);
       Vec4<Real> u = team.template row<F>(places, vertex, 0, velocities);
-      Triangle<Real>::add(u, u.w * (behind - own));
+      add_velocity(u, u.w * (behind - own));
       team.template set_row<F>(places, vertex, 0, velocities, u);
       behind = own;
       impulse = own_impulse;
