@@ -114,23 +114,25 @@ template <int Subdivisions> void ball_of_triangles(Setup &setup) {
 
 /* ------------------------------------------------------------------------------------------------- the cloth --- */
 
-/* A sheet of 48 x 48 squares, held at its corners, `height` over the sand. */
-void add_cloth(Setup &setup, float height) {
+/* A sheet of 48 x 48 squares: held at its corners, 1 m over the sand, or lying on it. */
+enum class Sheet { held, held_and_apart, held_and_weak, lying };
+
+template <Sheet Kind> void add_cloth(Setup &setup) {
   const Box box = bounds(setup.scene);
   const float x = 0.5f * (box.lower[0] + box.upper[0]), z = 0.5f * (box.lower[2] + box.upper[2]), y = box.upper[1];
   setup.additions.push_back([=](loam_world *world, loam_material_id) {
-    const cloths::Grid grid(48, 48, 0.45f * spacing);
+    constexpr float edge = 0.45f * spacing;
+    const cloths::Grid grid(48, 48, edge);
     loam_cloth_def def = cloths::definition(grid);
     def.position[0] = x;
-    def.position[1] = y + height;
+    def.position[1] = y + (Kind == Sheet::lying ? 0.6f * spacing : 1.0f);
     def.position[2] = z;
+    if (Kind == Sheet::held_and_apart) def.self_distance = 1.2f * edge;
+    if (Kind == Sheet::held_and_weak) def.tear_strain = 10; /* more than it will ever show */
     const cloths::Cloth cloth(world, def);
-    if (height > 0.1f) cloth.attach({grid.at(0, 0), grid.at(48, 0), grid.at(0, 48), grid.at(48, 48)});
+    if (Kind != Sheet::lying) cloth.attach({grid.at(0, 0), grid.at(48, 0), grid.at(0, 48), grid.at(48, 48)});
   });
 }
-
-void cloth_far_away(Setup &setup) { add_cloth(setup, 1); }
-void cloth_on_the_sand(Setup &setup) { add_cloth(setup, 0.6f * spacing); }
 
 /* ---------------------------------------------------------------------------------- what comes, goes and blows --- */
 
@@ -235,8 +237,12 @@ std::vector<Effect> all() {
       {"colliders", "its reaction", "the sphere asks for it", sphere<false>, sphere<true>},
       {"colliders", "a mesh of 1 280 triangles", "the same sphere", nullptr, ball_of_triangles<3>},
       {"colliders", "a mesh of 20 480 triangles", "the same sphere", nullptr, ball_of_triangles<5>},
-      {"cloth", "cloth, touching nothing", "2 401 vertices, held at its corners", nullptr, cloth_far_away},
-      {"cloth", "cloth on sand", "2 401 vertices, lying on it", nullptr, cloth_on_the_sand},
+      {"cloth", "cloth, touching nothing", "2 401 vertices, held at its corners", nullptr, add_cloth<Sheet::held>},
+      {"cloth", "its collisions with itself", "the same sheet, with a self_distance; nothing folds", add_cloth<Sheet::held>,
+       add_cloth<Sheet::held_and_apart>},
+      {"cloth", "its tearing", "the same sheet, with a tear_strain that it bears", add_cloth<Sheet::held>,
+       add_cloth<Sheet::held_and_weak>},
+      {"cloth", "cloth on sand", "2 401 vertices, lying on it", nullptr, add_cloth<Sheet::lying>},
       {"streams", "a stream", "29 particles every 10 ms, beside the sand", room_for_a_stream, stream},
       {"streams", "a killer's box", "takes nothing", nullptr, killer<LOAM_KILLER_BOX>},
       {"streams", "a killer of old particles", "takes nothing", nullptr, killer<LOAM_KILLER_AGE>},
