@@ -18,6 +18,7 @@ gallery=(
   "pouring_sauce 75 560 .05 .05 .05 0"
   "water_wheel 100 600 0 0 .15 0"
   "poured_cup 200 640 .25 .1 .05 .1"
+  "torn_hammock 120 600 .05 .12 .1 .2"
 )
 
 threads=0
