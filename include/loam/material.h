@@ -87,6 +87,19 @@ typedef struct loam_material_def {
    * A fluid stays out of the deformation of others, and how they meet cannot be chosen.
    *
    * The friction of a collider acts on fluids too; 0 lets them slip. */
+
+  /* FLUID: dynamic viscosity in Pa s, 0 (none) to 1e9; water has 0.001, oil 0.1, syrup 3, honey 10. It damps all motion but rigid motion, with Monaghan's
+   * pairwise form (2005), which keeps momentum and angular momentum. Between two fluids their harmonic mean acts, and other matter is dragged along as if
+   * it were as viscous. Stable for any: no more is felt than a kinematic viscosity (viscosity over density) of 10 r^2 / substep. */
+  float viscosity;
+
+  /* FLUID: surface tension in N/m, 0 (none) to 1e9; water has 0.072, mercury 0.49. It acts where fluid ends in nothing, as a stress along the surface, and keeps
+   * momentum; walls and other matter count as more fluid, so that drops meet a wall at a right angle. Drops of 4 to 6 r oscillate with the period of their
+   * tension within 8 %. No more is felt than 0.1 density r^3 / substep^2, and what shows of 0.072 needs a kernel radius of millimetres. */
+  float surface_tension;
+
+  /* FLUID: the tension in Pa, 0 (none) to 1e9, with which it clings to every collider; added to what the collider's contact says, see `stick` in collider.h. */
+  float adhesion;
 } loam_material_def;
 
 /* Defaults for a law: water for FLUID (1000 kg/m^3), dry sand (1600 kg/m^3, 1 MPa, 0.3, 30 degrees, no cohesion), plasticine for VON_MISES (1500 kg/m^3, 1 MPa, 0.3,

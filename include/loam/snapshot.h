@@ -37,7 +37,7 @@
 extern "C" {
 #endif
 
-#define LOAM_SNAPSHOT_VERSION 4
+#define LOAM_SNAPSHOT_VERSION 5
 
 /* The bytes that a snapshot of the world as it is now takes, exactly. Reads part of the particles, and so takes about a quarter of the time of saving.
  * Errors: INVALID_ARGUMENT for null. */

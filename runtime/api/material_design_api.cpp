@@ -19,7 +19,7 @@ template <class F> loam_status answer(float *result, const char *name, F &&formu
 loam_status loam_material_def_preset(const char *name, loam_material_def *def, size_t size) {
   return guarded(nullptr, [&] {
     check_pointer(name, "name");
-    write_definition(def, "def", size, preset(name), {first_material_size});
+    write_definition(def, "def", size, preset(name), earlier_material_sizes);
   });
 }
 

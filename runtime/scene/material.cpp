@@ -109,6 +109,11 @@ void check_plasticity(const loam_material_def &def) {
     range("critical_stretch", def.critical_stretch, 0, static_cast<double>(0.64f));
     range("hardening_factor", def.hardening_factor, 0, 1000);
     break;
+  case LOAM_LAW_FLUID:
+    range("viscosity", def.viscosity, 0, 1e9);
+    range("surface_tension", def.surface_tension, 0, 1e9);
+    range("adhesion", def.adhesion, 0, 1e9);
+    break;
   default:
     break;
   }
@@ -197,7 +202,8 @@ LawVariant make_law(const loam_material_def &given, double stiffness_share) {
   case LOAM_LAW_HERSCHEL_BULKLEY:
     return built(def.law, make_herschel_bulkley(def, m));
   case LOAM_LAW_FLUID:
-    return built(def.law, Fluid{{{0, 0}}});
+    return built(def.law,
+                 Fluid{{{0, 0}}, def.density, def.viscosity / def.density, def.surface_tension / def.density, def.adhesion});
   case LOAM_LAW_STOMAKHIN_SNOW:
     return built(def.law, make_stomakhin_snow(def, m));
   default:

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <initializer_list>
 
 #include <loam/material.h>
 
@@ -11,8 +12,10 @@ namespace loam {
 
 loam_material_def default_material(std::uint32_t law);
 
-// What loam_material_def was before it had the fields from hardening_modulus on; they are 0 then, which the older laws take for none.
-inline constexpr std::size_t first_material_size = offsetof(loam_material_def, hardening_modulus);
+// What loam_material_def was before it had the fields from hardening_modulus on, and before it had those of fluids; they are 0 then, which the laws take for
+// none.
+inline constexpr std::initializer_list<std::size_t> earlier_material_sizes = {offsetof(loam_material_def, hardening_modulus),
+                                                                              offsetof(loam_material_def, viscosity)};
 
 // Throws Error INVALID_ARGUMENT naming field, value and range.
 void check_material(const loam_material_def &def);

@@ -106,7 +106,10 @@ constexpr MaterialField material_fields[] = {{"density", &loam_material_def::den
                                              {"consistency", &loam_material_def::consistency},
                                              {"flow_exponent", &loam_material_def::flow_exponent},
                                              {"critical_compression", &loam_material_def::critical_compression},
-                                             {"critical_stretch", &loam_material_def::critical_stretch}};
+                                             {"critical_stretch", &loam_material_def::critical_stretch},
+                                             {"viscosity", &loam_material_def::viscosity},
+                                             {"surface_tension", &loam_material_def::surface_tension},
+                                             {"adhesion", &loam_material_def::adhesion}};
 
 // Slots up to the last that is in use; `at(slot)` is null where there is nothing.
 template <class At> std::uint32_t used_slots(std::size_t count, At &&at) {

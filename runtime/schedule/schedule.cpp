@@ -23,9 +23,14 @@ void Schedule::compile(const SceneContents &contents) {
   if (contents.cloth && (contents.surroundings.colliders || contents.particles || contents.cloth_self_contact))
     find_cloth_contacts = add("find cloth contacts");
   if (contents.cloth) prepare_cloth = add("prepare cloth");
-  const bool fluids = std::any_of(contents.materials.begin(), contents.materials.end(),
-                                  [](const SceneContents::Material &material) { return material.in_use && material.fluid; });
+  const auto any_of_fluids = [&](bool SceneContents::Material::*what) {
+    return std::any_of(contents.materials.begin(), contents.materials.end(),
+                       [what](const SceneContents::Material &material) { return material.in_use && material.*what; });
+  };
+  const bool fluids = any_of_fluids(&SceneContents::Material::fluid);
+  if (any_of_fluids(&SceneContents::Material::viscous)) viscosity = add("viscosity");
   if (fluids) prepare_fluids = add("prepare fluids");
+  if (any_of_fluids(&SceneContents::Material::surface_tension)) surface_tension = add("surface tension");
   for (const SceneContents::Material &material : contents.materials)
     solve.push_back(material.in_use ? add("solve " + material.name) : -1);
   if (contents.position_correction) position_correction = add("position correction");

@@ -1,4 +1,4 @@
-// Laws of contact that hold for pairs of a collider and a material, as a table where the kernels find them. Where no pair has one there is no table.
+// Laws of contact that hold for pairs of a collider and a material, a fluid's adhesion included, as a table where the kernels find them. Where no pair has one there is no table.
 #pragma once
 
 #include <algorithm>
@@ -13,14 +13,17 @@ public:
   explicit ContactLaws(Executor &executor) : executor_(executor), table_(executor.template array<ContactLaw>()) {}
 
   // Before a step. Throws Error OUT_OF_MEMORY.
-  void prepare(const std::vector<ColliderState> &colliders, std::size_t material_count) {
+  void prepare(const std::vector<ColliderState> &colliders, const std::vector<SolverMaterial> &materials) {
     laws_.clear();
     rows_.clear();
+    const bool clings = std::any_of(materials.begin(), materials.end(), [](const auto &m) { return adhesion_of(m) > 0.0f; });
     for (const ColliderState &collider : colliders) {
-      rows_.push_back(collider.pairs.empty() ? none : laws_.size());
-      if (collider.pairs.empty()) continue;
-      laws_.resize(laws_.size() + material_count, collider.law);
+      const bool own_laws = clings || !collider.pairs.empty();
+      rows_.push_back(own_laws ? laws_.size() : none);
+      if (!own_laws) continue;
+      laws_.resize(laws_.size() + materials.size(), collider.law);
       for (const PairLaw &pair : collider.pairs) laws_[rows_.back() + pair.material] = pair.law;
+      for (std::size_t m = 0; m < materials.size(); ++m) laws_[rows_.back() + m].stick += adhesion_of(materials[m]);
     }
     if (laws_.empty()) {
       table_.free();
@@ -37,6 +40,11 @@ public:
   std::uint64_t bytes() const { return table_.bytes(); }
 
 private:
+  // With which a fluid clings to every collider.
+  static float adhesion_of(const SolverMaterial &material) {
+    const Fluid *fluid = std::get_if<Fluid>(&material.law);
+    return fluid != nullptr && material.in_use ? fluid->adhesion : 0.0f;
+  }
   static constexpr std::size_t none = ~std::size_t(0);
   Executor &executor_;
   typename Executor::template Array<ContactLaw> table_;

@@ -17,6 +17,14 @@ void Solver<Executor>::meet_fluids(const std::vector<SolverMaterial> &materials,
     }
   table.insert(table.end(), reach.begin(), reach.end());
   copy_in(fluids_.is_fluid, is_fluid);
+  std::vector<float> viscosities(n, -1.0f);
+  bool viscous = false;
+  for (std::size_t m = 0; m < n; ++m)
+    if (const Fluid *fluid = std::get_if<Fluid>(&materials[m].law)) {
+      viscosities[m] = fluid->density * fluid->kinematic_viscosity;
+      viscous = viscous || (materials[m].in_use && fluid->kinematic_viscosity > 0.0f);
+    }
+  if (viscous) copy_in(fluids_.viscosities, viscosities);
 }
 
 template <class Executor> template <class F> void Solver<Executor>::for_each_fluid(F &&f) {
@@ -26,7 +34,64 @@ template <class Executor> template <class F> void Solver<Executor>::for_each_flu
 
 // Memory for this substep, before anything changes.
 template <class Executor> void Solver<Executor>::reserve_fluids() {
-  if (contact_count_ > 0 && fluids_.walls.capacity() == 0) fluids_.walls.reserve(spare_row_ + executor_.spare_rows());
+  const std::size_t rows = spare_row_ + executor_.spare_rows();
+  if (contact_count_ > 0 && fluids_.walls.capacity() == 0) fluids_.walls.reserve(rows);
+  const auto reserve = [&](Array<Row> &array) {
+    if (array.capacity() > 0) return;
+    array.reserve(rows);
+    executor_.set(array.data(), static_cast<int>(rows), Row{0, 0, 0, 0});
+  };
+  if (schedule_.surface_tension >= 0) reserve(fluids_.surface);
+  if (schedule_.viscosity >= 0)
+    for (Array<Row> &marks : fluids_.marks) reserve(marks);
+}
+
+// After prepare_fluids(), which leaves the gradients that surfaces are known by.
+template <class Executor> void Solver<Executor>::pull_surfaces() {
+  const float r = settings_.kernel_radius;
+  // So much of what a particle's inertia could carry in a substep: a quarter more flies apart.
+  constexpr float carried = 0.1f;
+  executor_.for_each(count_, ClearSurface{now_.materials.data(), fluids_.is_fluid.data(), fluids_.surface.data()});
+  for_each_fluid([&](int m) {
+    const Fluid &fluid = std::get<Fluid>(materials_[static_cast<std::size_t>(m)].law);
+    const float tension = std::min(fluid.kinematic_surface_tension, carried * r * (r / h_) * (r / h_));
+    executor_.for_each_particle_of(m, now_.velocities.data(),
+                                   FindSurface{surface_calibration * fluid.density * tension, 0.1f / r,
+                                               carried * fluid.density * (r / h_) * (r / h_), fluids_.surface.data()});
+  });
+  const PullSurface pull = {now_.positions.data(), fluids_.surface.data(), 1.0f / r, 8.0f * h_ / (r * r * r * r * r)};
+  for_each_fluid([&](int m) { executor_.for_each_particle_of(m, now_.velocities.data(), pull); });
+  lap(schedule_.surface_tension, particles());
+}
+
+// Velocities are diffused between this copy of them and the other.
+template <class Executor> void Solver<Executor>::diffuse_velocities() {
+  const float r = settings_.kernel_radius;
+  // Disordered fluid is a little stiffer than the lattice. More stages than this carry no more than is visible in so long a substep.
+  constexpr float disorder = 1.3f;
+  constexpr int most_stages = 16;
+  const auto carried = [](int stages) { return static_cast<float>(stages * stages + stages); };
+  const float rate = 2.0f * disorder * fluids_.calibration.viscous_rate * h_ / (r * r);
+  const float greatest = carried(most_stages) / rate;
+  int stages = 1;
+  while (stages < most_stages && carried(stages) < rate * fluids_.viscosity) ++stages;
+
+  executor_.for_each(count_,
+                     MarkViscosity{now_.materials.data(), fluids_.viscosities.data(), now_.positions.data(),
+                                   now_.velocities.data(), greatest, fluids_.marks[0].data(), fluids_.marks[1].data()});
+  ViscousPair pair = {now_.positions.data(), fluids_.marks[0].data(), kernel_, fluids_.calibration.viscous_scale * h_,
+                      viscous_softening * r * r};
+  executor_.for_each_particle(now_.velocities.data(), MeasureViscosity{pair, fluids_.marks[1].data()});
+  pair.marks = fluids_.marks[1].data();
+  executor_.copy(other_.velocities.data(), now_.velocities.data(), static_cast<std::size_t>(count_));
+  for (int j = 1; j <= stages; ++j) {
+    const float share = static_cast<float>(2 * j - 1) / static_cast<float>(j);
+    executor_.for_each_particle(now_.velocities.data(),
+                                DiffuseVelocities{pair, 0.5f * carried(stages), share, 1.0f - share,
+                                                  2.0f * share / carried(stages), other_.velocities.data()});
+    now_.velocities.swap(other_.velocities);
+  }
+  lap(schedule_.viscosity, particles() * static_cast<std::uint64_t>(stages));
 }
 
 template <class Executor> void Solver<Executor>::prepare_fluids() {

@@ -153,6 +153,8 @@ private:
   void reserve_fluids();
   void prepare_fluids();
   void start_fluids();
+  void diffuse_velocities();
+  void pull_surfaces();
   template <FluidTurn Turn> void solve_fluids_at_once(const JacobiRows &rows);
   JacobiRows empty_jacobi_rows();
   template <class Stage> void solve_fluids_in_turn(const Stage &stage);
@@ -400,6 +402,17 @@ template <class Executor> void Solver<Executor>::set_materials(const std::vector
   if (!fluid) { // memory may be refused up to here
     fluids_.walls.free();
     fluids_.is_fluid.free();
+  }
+  fluids_.viscosity = fluids_.surface_tension = 0;
+  for (const SolverMaterial &material : materials)
+    if (const Fluid *law = std::get_if<Fluid>(&material.law); law != nullptr && material.in_use) {
+      fluids_.viscosity = std::max(fluids_.viscosity, law->kinematic_viscosity);
+      fluids_.surface_tension = std::max(fluids_.surface_tension, law->kinematic_surface_tension);
+    }
+  if (fluids_.surface_tension == 0.0f) fluids_.surface.free();
+  if (fluids_.viscosity == 0.0f) {
+    fluids_.viscosities.free();
+    for (Array<Row> &marks : fluids_.marks) marks.free();
   }
   fluids_.in_use = fluid;
   distance_between_materials_ = std::any_of(materials.begin(), materials.end(),

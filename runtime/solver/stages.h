@@ -6,6 +6,8 @@
 #include "kernels/cloth/threads.h"
 #include "kernels/fluid/prepare_fluid.h"
 #include "kernels/fluid/solve_fluid_at_once.h"
+#include "kernels/fluid/surface_tension.h"
+#include "kernels/fluid/viscosity.h"
 #include "kernels/inelastic/measure_constraint.h"
 #include "kernels/inelastic/projected_tensor.h"
 #include "kernels/inelastic/scalar_multiplier.h"
@@ -44,11 +46,11 @@ template <class... L> struct StagesOfLaws<TypeList<L...>> {
 #ifdef LOAM_WITHOUT_FLUID
 using FluidStages = TypeList<>;
 #else
-using FluidStages =
-    TypeList<PrepareFluid, StartFluid<FluidMotion::velocities>, SolveFluid<FluidMotion::velocities>,
-             StartFluid<FluidMotion::displacements>, SolveFluid<FluidMotion::displacements>, FluidImpulse<FluidTurn::start>,
-             FluidImpulse<FluidTurn::velocities>, FluidImpulse<FluidTurn::start_displacements>,
-             FluidImpulse<FluidTurn::displacements>, KeepMultipliers>;
+using FluidStages = TypeList<PrepareFluid, StartFluid<FluidMotion::velocities>, SolveFluid<FluidMotion::velocities>,
+                             StartFluid<FluidMotion::displacements>, SolveFluid<FluidMotion::displacements>,
+                             FluidImpulse<FluidTurn::start>, FluidImpulse<FluidTurn::velocities>,
+                             FluidImpulse<FluidTurn::start_displacements>, FluidImpulse<FluidTurn::displacements>,
+                             KeepMultipliers, MeasureViscosity, DiffuseVelocities, FindSurface, PullSurface>;
 #endif
 
 using TeamStages = Concatenate<

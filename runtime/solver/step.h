@@ -19,7 +19,7 @@ template <class Executor> void Solver<Executor>::step(const StepInput &input) {
   cloth_.begin_step();
   pairs_ = 0;
   executor_.set(counters_.data(), 4, 0);
-  contact_laws_.prepare(input.colliders, materials_.size()); // memory may be refused from here on: no substep was done
+  contact_laws_.prepare(input.colliders, materials_); // memory may be refused from here on: no substep was done
   const auto begin = std::chrono::steady_clock::now();
   executor_.lap();
   const auto end_deforming = [&](double share) {
@@ -83,7 +83,12 @@ template <class Executor> void Solver<Executor>::compile_schedule(const Surround
   contents.velocity_smoothing = settings_.velocity_smoothing > 0.0f && !only_fluid;
   contents.cloth = cloth;
   contents.cloth_self_contact = self_contact;
-  for (std::size_t m = 0; m < materials_.size(); ++m) contents.materials[m].fluid = is_fluid_material(static_cast<int>(m));
+  for (std::size_t m = 0; m < materials_.size(); ++m)
+    if (const Fluid *fluid = std::get_if<Fluid>(&materials_[m].law)) {
+      contents.materials[m].fluid = true;
+      contents.materials[m].viscous = fluid->kinematic_viscosity > 0.0f;
+      contents.materials[m].surface_tension = fluid->kinematic_surface_tension > 0.0f;
+    }
   contents.sleep = settings_.sleep_speed > 0.0f;
   contents.particles =
       std::any_of(materials_.begin(), materials_.end(), [](const SolverMaterial &material) { return material.in_use; });

@@ -45,7 +45,9 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
 
   if constexpr (fluid_is_built) {
     if (fluids_.in_use && count_ > 0) {
+      if (schedule_.viscosity >= 0) diffuse_velocities();
       prepare_fluids();
+      if (schedule_.surface_tension >= 0) pull_surfaces();
       start_fluids();
     }
   }

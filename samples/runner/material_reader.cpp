@@ -50,6 +50,11 @@ public:
       table_.read("critical_compression", def_.critical_compression);
       table_.read("critical_stretch", def_.critical_stretch);
       break;
+    case LOAM_LAW_FLUID:
+      table_.read("viscosity", def_.viscosity);
+      table_.read("surface_tension", def_.surface_tension);
+      table_.read("adhesion", def_.adhesion);
+      break;
     default:
       break;
     }

@@ -79,6 +79,9 @@ TEST_F(Materials, EveryNumberHasItsRange) {
        {0, 0.39f}},
       {"critical_stretch", LOAM_LAW_STOMAKHIN_SNOW, &loam_material_def::critical_stretch, {-0.01f, 0.65f}, {0, 0.64f}},
       {"hardening_factor", LOAM_LAW_STOMAKHIN_SNOW, &loam_material_def::hardening_factor, {-1, 1001}, {0, 1000}},
+      {"viscosity", LOAM_LAW_FLUID, &loam_material_def::viscosity, {-1e-6f, 1.1e9f}, {0, 1e-6f, 1e9f}},
+      {"surface_tension", LOAM_LAW_FLUID, &loam_material_def::surface_tension, {-1e-6f, 1.1e9f}, {0, 0.07f, 1e9f}},
+      {"adhesion", LOAM_LAW_FLUID, &loam_material_def::adhesion, {-1e-6f, 1.1e9f}, {0, 20, 1e9f}},
   };
   for (const Field &field : fields) {
     std::vector<float> bad = field.bad;
@@ -115,6 +118,7 @@ TEST_F(Materials, FieldsOfOtherLawsAreIgnored) {
   def.yield_stress = def.friction_angle = def.cohesion = nan;
   EXPECT_EQ(accepts(def), "LOAM_OK");
   def.hardening_modulus = def.consolidation = def.consistency = def.critical_stretch = nan;
+  def.viscosity = def.surface_tension = def.adhesion = nan;
   EXPECT_EQ(accepts(def), "LOAM_OK");
   def = of_law(LOAM_LAW_DRUCKER_PRAGER);
   def.yield_stress = -1;
@@ -146,6 +150,16 @@ TEST_F(Materials, TheFirstVersionsStructStillWorks) {
     EXPECT_EQ(whole.hardening_modulus, 0);
   }
   for (std::size_t i = first_size; i < sizeof memory; ++i) EXPECT_EQ(memory[i], 0x5A) << i;
+  // One that ended before the fields of fluids.
+  constexpr std::uint32_t second_size = 108;
+  EXPECT_EQ(offsetof(loam_material_def, viscosity), second_size);
+  ASSERT_EQ(loam_material_def_default(LOAM_LAW_FLUID, def, second_size), LOAM_OK);
+  loam_material_id water = 0;
+  ASSERT_EQ(scenes::outcome(loam_material_create(world(), def, &water)), "LOAM_OK");
+  loam_material_def whole = {};
+  whole.struct_size = sizeof whole;
+  ASSERT_EQ(loam_material_get(world(), water, &whole), LOAM_OK);
+  EXPECT_EQ(whole.viscosity, 0);
   // It cannot know of a newer law's fields: they are 0, and the text says which is not enough.
   ASSERT_EQ(loam_material_def_default(LOAM_LAW_HERSCHEL_BULKLEY, def, first_size), LOAM_OK);
   refuses(*def, {"consistency", "0"});

@@ -51,7 +51,11 @@ std::vector<loam_material_def> each_law() {
   starch.flow_exponent = 3;
   snow.critical_compression = 2e-3f;
   snow.critical_stretch = 1e-3f;
-  return {sand(), rubber(), plasticine(500), metal, clay, mud, foam, starch, snow, of_law(LOAM_LAW_FLUID, "water")};
+  loam_material_def syrup = of_law(LOAM_LAW_FLUID, "syrup");
+  syrup.viscosity = 3;
+  syrup.surface_tension = 0.05f;
+  syrup.adhesion = 20;
+  return {sand(), rubber(), plasticine(500), metal, clay, mud, foam, starch, snow, of_law(LOAM_LAW_FLUID, "water"), syrup};
 }
 
 std::string outcome(loam_status status) {
