@@ -90,7 +90,7 @@ TEST(RunnerInsideTest, AgreesWithTheSumOverAllTriangles) {
 }
 
 TEST(RunnerInsideTest, KnowsTheHourglass) {
-  const runner::Mesh glass = runner::read_obj(std::string(LOAM_SOURCE_DIR) + "/samples/scenes/hourglass/hourglass.obj");
+  const runner::Mesh glass = runner::read_obj(LOAM_SOURCE_DIR "/samples/scenes/hourglass/hourglass.obj");
   ASSERT_TRUE(runner::is_closed(glass));
   const runner::InsideTest test(glass, {0, 0, 0}, {0, 0, 0, 1});
   EXPECT_TRUE(test.inside({0, 0, 0}));
