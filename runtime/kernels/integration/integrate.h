@@ -24,8 +24,8 @@ LOAM_FN bool slow_down(Row &v, float greatest) {
   return true;
 }
 
-// Nothing goes into the iterations faster than this many times the speed that it could leave them with, whatever the host, a field or gravity gave it: squares of
-// strains would overflow.
+// Nothing goes into the iterations faster than this many times the speed that it could leave them with, whatever the host or a field gave it: squares of
+// strains would overflow. Gravity is all the same, and strains nothing.
 constexpr float greatest_start = 4.0f;
 constexpr float unlimited_speed = 3.402823466e+38f; // of cloth, which may fall as fast as it will
 
@@ -38,10 +38,10 @@ struct ApplyForces {
   LOAM_FN void operator()(int i) const {
     Row v = velocities[i];
     if (v.w == 0.0f) return; // pinned
+    if (slow_down(v, greatest_speed)) atomic_add(limited, 1);
     v.x += velocity_change.x;
     v.y += velocity_change.y;
     v.z += velocity_change.z;
-    if (slow_down(v, greatest_speed)) atomic_add(limited, 1);
     velocities[i] = v;
   }
 };
