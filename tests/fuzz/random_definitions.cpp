@@ -134,7 +134,7 @@ void spoil(loam_material_def &def, Random &random) {
 
 void random_place(Random &random, float r, float position[3], float rotation[4]) {
   const double reach = random.chance(0.02) ? 1e5 : 8;
-  for (int k = 0; k < 3; ++k) position[k] = r * random.between(-reach, reach);
+  for (int k = 0; k < 3; ++k) position[k] = std::clamp(r * float(random.between(-reach, reach)), -1e9f, 1e9f);
   random_rotation(random, rotation);
 }
 
