@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "support/deforming.h"
 #include "support/forged_snapshot.h"
 #include "target.h"
 
@@ -39,6 +40,8 @@ struct Subject {
     attachment.count = 1;
     attachment.vertices = &corner;
     scenes::require(loam_cloth_attach(world.get(), id, &attachment), "loam_cloth_attach");
+    const meshes::Mesh skin = meshes::box(0.02f, 0.02f, 0.02f);
+    deforming::move(world, deforming::add(world, skin), deforming::moved(skin, [](float *x) { x[1] *= 1.1f; }));
     world.step(1e-3f);
     return world;
   }

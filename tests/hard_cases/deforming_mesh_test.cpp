@@ -10,17 +10,8 @@ using meshes::Mesh;
 using test::block;
 using test::HardCase;
 using test::Outcome;
+using test::ten_seconds;
 using test::without_planes;
-
-/* The defaults of the library, 60 frames a second, for ten seconds. */
-HardCase ten_seconds(std::vector<scenes::Scene> parts) {
-  HardCase hard(LOAM_SOLVER_GAUSS_SEIDEL, std::move(parts));
-  hard.def.substeps = 16;
-  hard.def.iterations = 5;
-  hard.step_seconds = 1.0f / 60;
-  hard.steps = hooks::short_run() ? 30 : 600;
-  return hard;
-}
 
 /* A closed skin of 320 triangles around sand is squashed and twisted three times a second, and carried around in a circle at 1 m/s. */
 TEST(DeformingMesh, ABagOfSandThatIsKneaded) {

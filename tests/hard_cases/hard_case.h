@@ -37,6 +37,18 @@ struct HardCase {
   }
 };
 
+/* The defaults of the library, 60 frames a second, for ten seconds. */
+inline HardCase ten_seconds(std::vector<scenes::Scene> parts) {
+  HardCase hard(LOAM_SOLVER_GAUSS_SEIDEL, std::move(parts));
+  loam_world_def defaults;
+  scenes::require(loam_world_def_default(&defaults, sizeof defaults), "default");
+  hard.def.substeps = defaults.substeps;
+  hard.def.iterations = defaults.iterations;
+  hard.step_seconds = 1.0f / 60;
+  hard.steps = hooks::short_run() ? 30 : 600;
+  return hard;
+}
+
 struct Outcome {
   scenes::Snapshot end;
   loam_statistics statistics{};           // of the last step

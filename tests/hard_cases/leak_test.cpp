@@ -10,18 +10,7 @@ using meshes::Mesh;
 using test::block;
 using test::HardCase;
 using test::Outcome;
-
-/* The defaults of the library, 60 frames a second, for ten seconds. */
-HardCase ten_seconds(std::vector<scenes::Scene> parts) {
-  HardCase hard(LOAM_SOLVER_GAUSS_SEIDEL, std::move(parts));
-  loam_world_def defaults;
-  scenes::require(loam_world_def_default(&defaults, sizeof defaults), "default");
-  hard.def.substeps = defaults.substeps;
-  hard.def.iterations = defaults.iterations;
-  hard.step_seconds = 1.0f / 60;
-  hard.steps = hooks::short_run() ? 30 : 600;
-  return hard;
-}
+using test::ten_seconds;
 
 /* How a collider is moved: where it is, and its turn by an angle about an axis. */
 struct Placement {

@@ -105,6 +105,7 @@ public:
   void step(float seconds);
   loam_statistics statistics() const;
   std::vector<loam_stage> stages() const;
+  bool has_stage(const std::string &name) const;
   std::uint64_t memory_bytes() const; // all effects together
   std::uint64_t state_hash() const;
   Snapshot snapshot() const;

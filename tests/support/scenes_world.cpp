@@ -124,6 +124,11 @@ std::vector<loam_stage> World::stages() const {
   return stages;
 }
 
+bool World::has_stage(const std::string &name) const {
+  const std::vector<loam_stage> all = stages();
+  return std::any_of(all.begin(), all.end(), [&](const loam_stage &stage) { return stage.name == name; });
+}
+
 std::uint64_t World::memory_bytes() const {
   std::uint32_t count = 0;
   require(loam_world_get_memory(world_, nullptr, 0, &count), "loam_world_get_memory");

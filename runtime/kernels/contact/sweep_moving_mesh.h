@@ -17,19 +17,12 @@ struct SweepMovingMesh {
     for (int pass = 0; pass < SidePasses::all; ++pass) {
       bool changed = false;
       pierced = false;
-      BallQuery query(mesh.nodes, start);
-      const float reach = length(way) + passes.margin;
-      for (int i = query.next(reach * reach); i >= 0; i = query.next(reach * reach)) {
-        const int count = static_cast<int>(mesh.packets[i].count);
-        for (int k = 0; k < count; ++k) {
-          const TriangleView before = view(mesh.packets[i], k, start), after = view(mesh.end_packets[i], k, start + way);
-          if (is_line(before) || is_line(after)) continue; // its neighbours have its edges
-          const SideKept kept = keep_side(before, after, passes, pass);
-          pierced = pierced || kept.pierced;
-          changed = changed || kept.changes;
-          way = way + kept.more;
-        }
-      }
+      for_each_triangle(way, [&](const TriangleView &before, const TriangleView &after) {
+        const SideKept kept = keep_side(before, after, passes, pass);
+        pierced = pierced || kept.pierced;
+        changed = changed || kept.changes;
+        way = way + kept.more;
+      });
       if (!changed) break;
       cut = true;
     }
@@ -38,6 +31,18 @@ struct SweepMovingMesh {
   }
 
 private:
+  // Within reach of the way as it is at first; `f` sees a triangle from the way as it is by then.
+  template <class F> LOAM_FN void for_each_triangle(const Vec3<float> &way, const F &f) const {
+    BallQuery query(mesh.nodes, start);
+    const float reach = length(way) + passes.margin;
+    for (int i = query.next(reach * reach); i >= 0; i = query.next(reach * reach)) {
+      const int count = static_cast<int>(mesh.packets[i].count);
+      for (int k = 0; k < count; ++k) {
+        const TriangleView before = view(mesh.packets[i], k, start), after = view(mesh.end_packets[i], k, start + way);
+        if (!is_line(before) && !is_line(after)) f(before, after); // a line's neighbours have its edges
+      }
+    }
+  }
   LOAM_FN static TriangleView view(const TrianglePacket &packet, int lane, Vec3<float> from) {
     return {lane_of(packet.a, lane) - from, lane_of(packet.b, lane) - from, lane_of(packet.c, lane) - from};
   }
@@ -47,15 +52,8 @@ private:
   }
   LOAM_FN void go_along(Vec3<float> &way) const {
     Company company;
-    BallQuery query(mesh.nodes, start);
-    const float reach = length(way) + passes.margin;
-    for (int i = query.next(reach * reach); i >= 0; i = query.next(reach * reach)) {
-      const int count = static_cast<int>(mesh.packets[i].count);
-      for (int k = 0; k < count; ++k) {
-        const TriangleView before = view(mesh.packets[i], k, start), after = view(mesh.end_packets[i], k, start + way);
-        if (!is_line(before) && !is_line(after)) (void)company.add(before, after, passes);
-      }
-    }
+    for_each_triangle(
+        way, [&](const TriangleView &before, const TriangleView &after) { (void)company.add(before, after, passes); });
     if (company.weight > 0.0f) way = way + company.mean();
   }
 };

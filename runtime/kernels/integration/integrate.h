@@ -25,7 +25,7 @@ LOAM_FN bool slow_down(Row &v, float greatest) {
 }
 
 // Nothing goes into the iterations faster than this many times the speed that it could leave them with, whatever the host or a field gave it: squares of
-// strains would overflow. Gravity is all the same, and strains nothing.
+// strains would overflow. Gravity is the same for all, and strains nothing.
 constexpr float greatest_start = 4.0f;
 constexpr float unlimited_speed = 3.402823466e+38f; // of cloth, which may fall as fast as it will
 
