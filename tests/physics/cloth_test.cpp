@@ -1,51 +1,16 @@
 /* Cloth against closed forms, and its independence of iterations and substeps. */
 #include <gtest/gtest.h>
 
-#include "support/cloths.h"
+#include "hanging_cloth.h"
 #include "support/meshes.h"
 
 namespace loam {
 namespace {
 
-using cloths::Cloth;
-using cloths::Grid;
+using namespace test;
 
-struct Accuracy {
-  std::uint32_t iterations, substeps;
-};
 /* The corners, and what lies between. */
 constexpr Accuracy accuracies[] = {{5, 1}, {100, 1}, {20, 3}, {5, 10}, {100, 10}};
-
-void run(loam_world *world, float seconds) {
-  for (int frame = 0; frame < static_cast<int>(60 * seconds); ++frame)
-    scenes::require(loam_world_step(world, 1.0f / 60), "loam_world_step");
-}
-
-std::vector<std::uint32_t> column(const Grid &grid, std::uint32_t i) {
-  std::vector<std::uint32_t> vertices;
-  for (std::uint32_t j = 0; j <= grid.rows; ++j) vertices.push_back(grid.at(i, j));
-  return vertices;
-}
-std::vector<std::uint32_t> row(const Grid &grid, std::uint32_t j) {
-  std::vector<std::uint32_t> vertices;
-  for (std::uint32_t i = 0; i <= grid.columns; ++i) vertices.push_back(grid.at(i, j));
-  return vertices;
-}
-
-/* How far the lower edge of a sheet 1 m long hangs below its upper one. */
-double hanging_length(const Accuracy &accuracy, float stiffness, float greatest_stretch) {
-  const Grid grid(16, 16, 1.0f / 16, true);
-  scenes::World world(cloths::world_def(accuracy.iterations, accuracy.substeps));
-  loam_cloth_def def = cloths::definition(grid);
-  def.stretch_stiffness = stiffness;
-  def.damping = greatest_stretch > 0 ? 1e-3f : 0.05f; // without threads it swings
-  def.greatest_stretch = greatest_stretch;
-  const Cloth cloth(world.get(), def);
-  cloth.attach(row(grid, 0));
-  cloth.set_wind(0, 0, 0, 1, 0);
-  run(world.get(), 2);
-  return -double(cloth.vertices().lowest());
-}
 
 /* rho g L^2 / (2 k), and the shear that the free edges add nothing to. */
 TEST(ClothPhysics, AHangingSheetStretchesByItsWeight) {
@@ -62,25 +27,6 @@ TEST(ClothPhysics, AHangingSheetIsIndependentOfIterationsAndSubsteps) {
     RecordProperty(std::to_string(accuracy.iterations) + "x" + std::to_string(accuracy.substeps), std::to_string(hanging));
   }
   EXPECT_GT(hanging_length({5, 1}, 3000, 0), 1.03); // without threads
-}
-
-/* A strip of 1 m between points 0.7 m apart: 2 a sinh(0.35 / a) = 1, sag a (cosh(0.35 / a) - 1) = 0.3196 m. */
-double sag(const Accuracy &accuracy) {
-  const Grid grid(32, 3, 1.0f / 32);
-  scenes::World world(cloths::world_def(accuracy.iterations, accuracy.substeps));
-  const Cloth cloth(world.get(), cloths::definition(grid));
-  std::vector<std::uint32_t> held = column(grid, 0);
-  std::vector<float> points;
-  const std::vector<std::uint32_t> other = column(grid, grid.columns);
-  held.insert(held.end(), other.begin(), other.end());
-  for (std::size_t i = 0; i < held.size(); ++i) {
-    const float z = grid.positions[3 * held[i] + 2];
-    points.insert(points.end(), {i < other.size() ? -0.35f : 0.35f, 0.0f, z});
-  }
-  cloth.attach(held, points);
-  cloth.set_wind(0, 0, 0, 4, 0);
-  run(world.get(), 4);
-  return -double(cloth.vertices().lowest());
 }
 
 TEST(ClothPhysics, AStripHangsInACatenary) {
@@ -103,7 +49,7 @@ double tip_drop(float bending) {
   held.insert(held.end(), second.begin(), second.end());
   cloth.attach(held);
   cloth.set_wind(0, 0, 0, 20, 0);
-  run(world.get(), 0.5f);
+  run(world, 0.5f);
   double sum = 0; // over the last half second, for it swings
   for (int frame = 0; frame < 30; ++frame) {
     scenes::require(loam_world_step(world.get(), 1.0f / 60), "loam_world_step");
@@ -124,7 +70,7 @@ TEST(ClothPhysics, ASheetFallsAtTheSpeedThatItsDragAllows) {
   scenes::World world(cloths::world_def(5, 4));
   const Cloth cloth(world.get(), cloths::definition(grid));
   cloth.set_wind(0, 0, 0, 1.2f, 0);
-  run(world.get(), 3);
+  run(world, 3);
   const Cloth::Vertices now = cloth.vertices();
   EXPECT_NEAR(double(now.fastest()), std::sqrt(2 * 0.15 * 9.81 / (1.2 * 1.2)), 0.02);
 }
@@ -149,7 +95,7 @@ Drape drape(const Accuracy &accuracy) {
   def.thickness = 0.01f;
   const Cloth cloth(world.get(), def);
   cloth.set_wind(0, 0, 0, 2, 0);
-  run(world.get(), 3);
+  run(world, 3);
   const Cloth::Vertices now = cloth.vertices();
   Drape result = {0, 1};
   for (std::uint32_t j = 0; j <= grid.rows; ++j)
@@ -184,7 +130,7 @@ TEST(ClothPhysics, AFreeClothKeepsItsMomentum) {
   const Cloth cloth(world.get(), def);
   const std::vector<std::uint32_t> corner = {grid.at(0, 0)};
   cloth.attach(corner); // a jerk, so that there is something to conserve
-  run(world.get(), 0.1f);
+  run(world, 0.1f);
   scenes::require(loam_cloth_release(world.get(), cloth.id, corner.data(), 1), "loam_cloth_release");
   const auto momentum = [&](double sum[3]) {
     const Cloth::Vertices now = cloth.vertices();
@@ -200,7 +146,7 @@ TEST(ClothPhysics, AFreeClothKeepsItsMomentum) {
   double before[3] = {}, after[3] = {};
   const double size = momentum(before);
   ASSERT_GT(size, 1e-4);
-  run(world.get(), 0.5f);
+  run(world, 0.5f);
   momentum(after);
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(after[k], before[k], 1e-5 * size);
 }

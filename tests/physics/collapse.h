@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <gtest/gtest.h>
 #include <limits>
 
-#include "support/scenes.h"
+#include "support/course.h"
 
 namespace loam::test {
 
@@ -23,14 +22,15 @@ struct Collapse {
   struct Result {
     double run_out, virial, mean_speed, nearest, lowest;
   };
-  Result run() {
-    def.substeps = 40;
+  Result run(const Course &course = {}) {
+    const double step = std::max(0.02, substep);
+    def.substeps = std::uint32_t(std::lround(step / substep));
+    course.change(def);
     scenes::World world(def, scene);
-    const double step = 40 * substep;
-    for (int k = 0; k < int(std::lround(seconds / step)); ++k) world.step(float(step));
+    for (int k = 0; k < int(std::lround(seconds / step)); ++k) course.step(world, float(step));
     const scenes::Snapshot now = world.snapshot();
     const loam_statistics statistics = world.statistics();
-    EXPECT_EQ(statistics.non_finite, 0u);
+    if (statistics.non_finite > 0) throw std::runtime_error("particles are not finite");
     double lowest = 1;
     for (std::size_t i = 1; i < now.positions.size(); i += 3) lowest = std::min(lowest, double(now.positions[i]));
     return {scenes::run_out(now.positions, scene), statistics.virial, statistics.mean_speed, nearest(now.positions), lowest};

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <functional>
-#include <gtest/gtest.h>
 #include <random>
 #include <vector>
 

@@ -239,6 +239,17 @@ void ImplicitStep::add_particles(const Vectors &positions, const Vectors &veloci
   }
 }
 
+void ImplicitStep::set_velocities(const Vectors &velocities) {
+  for (std::size_t p = 0; p < particles_.size(); ++p)
+    if (particles_.motions[p].inverse_mass > 0) particles_.motions[p].velocity = velocities.col(particles_.ids[p]);
+}
+
+Vectors ImplicitStep::velocities_by_id() const {
+  Vectors velocities(3, Eigen::Index(particles_.size()));
+  for (std::size_t p = 0; p < particles_.size(); ++p) velocities.col(particles_.ids[p]) = particles_.motions[p].velocity;
+  return velocities;
+}
+
 void ImplicitStep::advance(double h) {
   const double r = settings_.kernel_radius;
   const WendlandKernel<double> kernel(r);

@@ -81,6 +81,10 @@ public:
   /* Each of `volume`; pinned ones keep their velocity, which is 0. Ids follow the order of creation. */
   void add_particles(const Vectors &positions, const Vectors &velocities, double volume, bool pinned = false);
 
+  /* By id. Pinned particles are left out. */
+  void set_velocities(const Vectors &velocities);
+  Vectors velocities_by_id() const;
+
   /* Throws std::runtime_error if no minimum is found. */
   void advance(double step);
 

@@ -1,0 +1,39 @@
+/* loam-accuracy: how far off the settings of a world leave each effect, and what they cost, as a table; scripts/accuracy.sh makes the page of it. */
+#include "study.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+namespace {
+
+using namespace loam::accuracy;
+
+constexpr Effect effects[] = {
+    {"beam", beam},   {"one_step", one_step},       {"sand", sand},      {"snow", snow}, {"dam", dam},
+    {"cloth", cloth}, {"penetration", penetration}, {"scaling", scaling}};
+
+} // namespace
+
+int main(int argument_count, char **arguments) {
+  std::vector<std::string> names, chosen;
+  for (const Effect &effect : effects) names.emplace_back(effect.name);
+  std::string out = ".";
+  bool quick = false;
+  CLI::App app("How accurate settings are and what they cost, on one thread. Writes accuracy.csv.");
+  app.add_option("--effect", chosen, "one to measure; may be given again; all of them unless given")
+      ->check(CLI::IsMember(names));
+  app.add_flag("--quick", quick, "few settings of the small experiments");
+  app.add_option("--out", out, "the folder of the table")->check(CLI::ExistingDirectory);
+  CLI11_PARSE(app, argument_count, arguments);
+  try {
+    Study study(quick);
+    for (const Effect &effect : effects)
+      if (chosen.empty() || std::find(chosen.begin(), chosen.end(), effect.name) != chosen.end()) effect.run(study);
+    study.write(out + "/accuracy.csv");
+    study.show("written to " + out + "/accuracy.csv");
+  } catch (const std::exception &error) {
+    std::fprintf(stderr, "loam-accuracy: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
