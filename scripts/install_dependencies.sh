@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing to build Loam on Debian 12, as root or through sudo. Does nothing, at once, where nothing is missing.
 #   install_dependencies.sh [demo|tests|fuzz|docs]  demo: the library and the sample programs; tests (default): that and every check;
-#                                                  fuzz: what libFuzzer needs; docs: what draws the plots
+#                                                  fuzz: what libFuzzer needs; docs: what measures for the pages and draws their plots
 # shellcheck source=scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -12,7 +12,7 @@ case $group in
   demo) ;;
   tests) packages+=(git python3 binutils clang clang-format clang-tidy libeigen3-dev libgtest-dev libbenchmark-dev) ;;
   fuzz) packages+=(clang libclang-rt-14-dev) ;;
-  docs) packages+=(python3 python3-matplotlib libbenchmark-dev) ;;
+  docs) packages+=(python3 python3-matplotlib libeigen3-dev libgtest-dev libbenchmark-dev) ;;
   *) die "unknown group '$group': demo, tests, fuzz or docs" ;;
 esac
 

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double measured_run_out = 1.2;
 
-test::Collapse slab(bool quick) {
-  test::Collapse slab(scenes::slab(scenes::sand(22.2f), quick ? 10 : 14, 1, 4, 1));
+test::Collapse slab(bool quick, const scenes::Lattice &lattice = {}) {
+  test::Collapse slab(scenes::slab(scenes::sand(22.2f), quick ? 10 : 14, 1, 4, 1, lattice));
   slab.def.velocity_smoothing = 0;
   slab.seconds = quick ? 0.48 : 0.56;
   return slab;
@@ -74,9 +74,16 @@ void sand(Study &study) {
   study.show("sand, finest setting");
   const double finest = run_out(experiment, fine, unused);
 
+  // Which grains come to lie where hangs on the last digit of the start: so far do equal settings differ.
+  for (std::uint32_t seed = 2; seed < (study.quick() ? 3 : 6); ++seed)
+    study.sweep("sand", "other grains", {"run-out over the finest setting"}, {{}},
+                [&](const Setting &setting, Meter &meter) {
+                  return std::vector{run_out(slab(study.quick(), {.seed = seed}), setting, meter) / finest - 1};
+                });
+
   const Form gauss_seidel = {}, scalar = {LOAM_SOLVER_GAUSS_SEIDEL, LOAM_MULTIPLIER_SCALAR}, jacobi = {LOAM_SOLVER_JACOBI};
   const std::vector<Setting> settings =
-      study.quick() ? combine({gauss_seidel, jacobi}, {1e-3, 2e-3}, {2, 5})
+      study.quick() ? combine({gauss_seidel}, {1e-3, 2e-3}, {2, 5})
                     : combine({gauss_seidel, scalar, jacobi}, {5e-4, 1e-3, 2e-3, 4e-3}, {1, 2, 5, 10});
   study.sweep(
       "sand", "slab", {"run-out over the experiment", "run-out over material points", "run-out over the finest setting"},

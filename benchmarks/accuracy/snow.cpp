@@ -7,7 +7,7 @@ namespace loam::accuracy {
 
 void snow(Study &study) {
   const auto sweep = [&](const char *name, std::uint32_t plasticity, const std::vector<Setting> &settings) {
-    const Setting fine{{}, 5e-5, 20};
+    const Setting fine{{}, study.quick() ? 1e-4 : 5e-5, 20};
     Meter unused(fine);
     const test::Shape finest = test::thrown_snow(fine.substep, plasticity, unused.course()).shape;
     study.sweep(
