@@ -40,9 +40,10 @@ enum {
   LOAM_ERROR_INTERNAL = 9,            /* a fault of the library; please report the text */
   LOAM_ERROR_INVALID_SNAPSHOT = 10,   /* not a snapshot, damaged, cut short, or of another version; the text says which */
   LOAM_ERROR_SNAPSHOT_MISMATCH =
-      11,                   /* a snapshot of a world that was described otherwise; the text names the field that differs */
-  LOAM_ERROR_BUSY = 12,     /* an asynchronous step was begun and not yet waited for */
-  LOAM_ERROR_NOT_BUILT = 13 /* the library was built without this law or effect; the text names it */
+      11,                    /* a snapshot of a world that was described otherwise; the text names the field that differs */
+  LOAM_ERROR_BUSY = 12,      /* an asynchronous step was begun and not yet waited for */
+  LOAM_ERROR_NOT_BUILT = 13, /* the library was built without this law or effect; the text names it */
+  LOAM_ERROR_BUDGET = 14     /* a step took what stability needs, more than its budget; it was done. See accuracy.h */
 };
 
 /* A short constant name such as "LOAM_ERROR_CAPACITY"; "LOAM_ERROR_UNKNOWN" for a value that is not a status.

@@ -4,6 +4,7 @@
  *
  *   base.h       status codes, ids, hooks (allocator, job system, log), version
  *   world.h      create a world, step it, ask what it cost
+ *   accuracy.h   what its steps keep to: substeps and iterations, a tolerance, or a budget of time
  *   material.h   what matter is made of
  *   material_design.h   materials by name, and by what can be seen of them
  *   collider.h   what matter runs into: planes, simple solids, distance grids, triangle meshes
@@ -20,6 +21,7 @@
 #ifndef LOAM_LOAM_H
 #define LOAM_LOAM_H
 
+#include <loam/accuracy.h>
 #include <loam/base.h>
 #include <loam/cloth.h>
 #include <loam/collider.h>

@@ -2,7 +2,7 @@
  *
  * A snapshot holds what moves: particles, vertices of cloth with what they are attached to, poses of colliders and the vertices
  * of meshes that deform, how far streams are, where fields and
- * killers are and which blasts are over, wind, gravity, substeps and iterations. It does not hold what the host described once, meshes above all, nor what
+ * killers are and which blasts are over, wind, gravity and what accuracy.h has set. It does not hold what the host described once, meshes above all, nor what
  * can be found again: neighbours, contacts, distances to colliders, statistics. So it is restored into a world that was described alike, be it the one that was saved, or one made anew:
  *
  *   of loam_world_def     kernel_radius, solver, plasticity, velocity_smoothing, minimum_distance, gradient_cutoff, particle_capacity,
@@ -37,7 +37,7 @@
 extern "C" {
 #endif
 
-#define LOAM_SNAPSHOT_VERSION 5
+#define LOAM_SNAPSHOT_VERSION 6
 
 /* The bytes that a snapshot of the world as it is now takes, exactly. Reads part of the particles, and so takes about a quarter of the time of saving.
  * Errors: INVALID_ARGUMENT for null. */

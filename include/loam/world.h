@@ -133,9 +133,10 @@ LOAM_API loam_status loam_world_create(const loam_world_def *def, loam_world **w
 /* Ends a world, its memory and all its ids. Mapped pointers become invalid. Null is allowed and does nothing. */
 LOAM_API loam_status loam_world_destroy(loam_world *world);
 
-/* Advances the world by `seconds` (over 0, at most 1), in the definition's number of substeps.
+/* Advances the world by `seconds` (over 0, at most 1), in the definition's number of substeps, or as accuracy.h has them chosen.
  * Errors: INVALID_ARGUMENT; IN_USE while particle buffers are mapped; CAPACITY or OUT_OF_MEMORY if the neighbour pairs need more
- * room; CAPACITY if a stream found no room (see loam_emitter_def.when_full). On CAPACITY or OUT_OF_MEMORY the world stands at the end of the last whole
+ * room; CAPACITY if a stream found no room (see loam_emitter_def.when_full); BUDGET after a step that
+ * took more than that, see accuracy.h. On CAPACITY or OUT_OF_MEMORY the world stands at the end of the last whole
  * substep (*statistics.substeps_done of them): for a stream's sake that is the end of the step. */
 LOAM_API loam_status loam_world_step(loam_world *world, float seconds);
 
@@ -166,7 +167,7 @@ LOAM_API loam_status loam_world_shift_origin(loam_world *world, const float offs
 /* Gravity in m/s^2 from the next step on. Errors: INVALID_ARGUMENT if a component is not finite or beyond 1e6. */
 LOAM_API loam_status loam_world_set_gravity(loam_world *world, const float gravity[3]);
 
-/* Substeps and iterations from the next step on; ranges as in the definition. */
+/* Substeps and iterations from the next step on; ranges as in the definition. accuracy.h has more. */
 LOAM_API loam_status loam_world_set_accuracy(loam_world *world, uint32_t substeps, uint32_t iterations);
 
 /* Wakes all that sleeps, at the start of the next step; see loam_world_def.sleep_speed. */
@@ -236,6 +237,20 @@ typedef struct loam_statistics {
   uint64_t particles_killed; /* by killers, at the end of the step */
 
   uint64_t cloth_tears; /* vertices of cloth that tore apart in the step, see loam_cloth_def.tear_strain */
+
+  /* What the step did for accuracy, see accuracy.h. */
+  uint32_t substeps;          /* that it was cut into */
+  uint32_t iterations;        /* of each substep; with a tolerance, the most that one took */
+  uint32_t substeps_reason;   /* LOAM_SUBSTEPS_* */
+  uint32_t substeps_unsolved; /* with a tolerance: those whose iterations ended above it */
+  uint64_t iterations_done;   /* of all substeps together */
+  double solution_error;      /* with a tolerance: the greatest of the substeps' estimates; otherwise 0 */
+  double least_budget;        /* with a budget: seconds that what stability needs takes, by the costs so far; otherwise 0 */
+
+  /* How far the last substep's end is from what it should keep to. */
+  double density_error; /* of fluids: the mean compression, density over rest density less 1, 0 where it is less */
+  double stretch;       /* of cloth: the greatest stretch of a triangle in any direction, less 1; 0 without */
+  double penetration;   /* m: how deep spheres of radius r/2 around particles are within contact planes, at most */
 } loam_statistics;
 
 /* Errors: INVALID_ARGUMENT for null or an unknown struct_size. */

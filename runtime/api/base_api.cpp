@@ -42,6 +42,8 @@ const char *loam_status_name(loam_status status) {
     return "LOAM_ERROR_BUSY";
   case LOAM_ERROR_NOT_BUILT:
     return "LOAM_ERROR_NOT_BUILT";
+  case LOAM_ERROR_BUDGET:
+    return "LOAM_ERROR_BUDGET";
   default:
     return "LOAM_ERROR_UNKNOWN";
   }

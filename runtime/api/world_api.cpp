@@ -74,7 +74,11 @@ loam_status loam_world_set_gravity(loam_world *world, const float gravity[3]) {
 loam_status loam_world_set_accuracy(loam_world *world, uint32_t substeps, uint32_t iterations) {
   return guarded(world, [&] {
     check_pointer(world, "world");
-    world->set_accuracy(substeps, iterations);
+    check_range("substeps", substeps, 1, 10000);
+    loam_accuracy_def def = default_accuracy();
+    def.substeps = substeps;
+    def.iterations = iterations;
+    world->set_accuracy(def);
   });
 }
 
@@ -109,10 +113,8 @@ loam_status loam_world_get_statistics(const loam_world *world, loam_statistics *
   return guarded(world, [&] {
     check_pointer(world, "world");
     check_pointer(statistics, "statistics");
-    loam_statistics values = world->backend().statistics();
-    values.particles = world->backend().particle_count();
-    values.capacity_needed = world->capacity_needed();
-    write_definition(statistics, "statistics", statistics->struct_size, values);
+    write_definition(statistics, "statistics", statistics->struct_size, world->statistics(),
+                     {offsetof(loam_statistics, substeps)}); // before it had what accuracy.h is about
   });
 }
 

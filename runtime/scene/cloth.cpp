@@ -331,6 +331,13 @@ void ClothScene::shift_origin(ClothBackend &backend, const Vec3<float> &by) {
 
 // ------------------------------------------------------------------------------------------------------ snapshots ---
 
+std::uint64_t ClothScene::vertex_count() const {
+  std::uint64_t count = 0;
+  for (std::size_t slot = 0; slot < cloths_.size(); ++slot)
+    if (const Description *cloth = description(slot); cloth != nullptr) count += cloth->vertex_count;
+  return count;
+}
+
 const ClothScene::Description *ClothScene::description(std::size_t slot) const {
   const Cloth *cloth = slot < cloths_.size() ? cloths_.at_index(slot) : nullptr;
   return cloth != nullptr ? &cloth->description : nullptr;

@@ -62,6 +62,7 @@ public:
   void list_state(ClothBackend &backend, const std::vector<Changes> &changes, std::vector<StateSection> &list) const;
 
   bool any() const { return count_ > 0; }
+  std::uint64_t vertex_count() const;
   bool any_mapped() const { return mapped_ > 0; }
   // Throws IN_USE if a cloth is attached to the collider in this slot.
   void check_unattached(int collider_slot) const;

@@ -179,6 +179,12 @@ void check_material(const loam_material_def &def) {
   static_cast<void>(make_law(def)); // refuses laws that are left out
 }
 
+double wave_speed(const loam_material_def &def) {
+  if (def.law == LOAM_LAW_FLUID) return 0;
+  const Moduli m = moduli_of(def);
+  return std::sqrt((m.lambda + 2 * m.mu) / static_cast<double>(def.density));
+}
+
 double stiffness_share(const loam_material_def &def, double kernel_radius, double substep, std::uint32_t iterations) {
   if (def.law == LOAM_LAW_FLUID) return 1; // it has no stiffness
   const Moduli m = moduli_of(def);

@@ -28,6 +28,9 @@ LawVariant make_law(const loam_material_def &def, double stiffness_share = 1);
 // So c is bounded; matter is then softer, which without the bound it would be too, for want of iterations, but wildly.
 double stiffness_share(const loam_material_def &def, double kernel_radius, double substep, std::uint32_t iterations);
 
+// Of pressure waves, m/s; 0 for fluids, whose pressure is solved for.
+double wave_speed(const loam_material_def &def);
+
 // K in Pa.
 double bulk_modulus(const loam_material_def &def);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <system_error>
 
@@ -112,8 +113,8 @@ loam_world::loam_world(const loam_world_def &def)
   } else {
     backend_ = make_cpu_backend(settings, execution_);
   }
-  input_.substeps = def.substeps;
-  input_.iterations = def.iterations;
+  accuracy_.substeps = def.substeps;
+  accuracy_.iterations = def.iterations;
   input_.gravity = {def.gravity[0], def.gravity[1], def.gravity[2]};
 }
 
@@ -131,9 +132,10 @@ void loam_world::check_step(float seconds) const {
   check_above("seconds", static_cast<double>(seconds), 0, 1);
   check_unmapped();
   if (cloths_.any_mapped()) throw Error(LOAM_ERROR_IN_USE, "a cloth's buffers are mapped; call loam_cloth_unmap first");
-  if (!(seconds / static_cast<float>(input_.substeps) >= 1e-9f))
+  const std::uint32_t most = accuracy_.substeps != 0 ? accuracy_.substeps : accuracy_.most_substeps;
+  if (!(seconds / static_cast<float>(most) >= 1e-9f))
     throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("seconds is %g; over %u substeps that is less than 1e-9 s a substep",
-                                                    static_cast<double>(seconds), input_.substeps));
+                                                    static_cast<double>(seconds), most));
 }
 
 void loam_world::step(float seconds) {
@@ -169,11 +171,37 @@ void loam_world::check_not_stepping() const {
 }
 
 const loam::Schedule &loam_world::schedule() const {
-  return backend_->schedule({!colliders_.empty(), emitters_.any(), fields_.any(), killers_.any()});
+  return backend_->schedule(
+      {!colliders_.empty(), emitters_.any(), fields_.any(), killers_.any(), accuracy_.mode == LOAM_ACCURACY_TOLERANCE});
+}
+
+double loam_world::load() const {
+  return static_cast<double>(backend_->particle_count()) + static_cast<double>(cloths_.vertex_count());
+}
+
+loam::StepChoice loam_world::choose_step(float seconds) {
+  if (accuracy_.substeps != 0) return choose_substeps(accuracy_, {});
+  const float *g = &input_.gravity.x;
+  StepNeeds needs = {static_cast<double>(seconds), static_cast<double>(def_.kernel_radius), backend_->greatest_speed(), 0,
+                     std::hypot(static_cast<double>(g[0]), static_cast<double>(g[1]), static_cast<double>(g[2]))};
+  for (std::size_t i = 0; i < materials_.size(); ++i)
+    if (const Material *m = materials_.at_index(i); m != nullptr && (m->particles > 0 || m->emitters > 0))
+      needs.wave_speed = std::max(needs.wave_speed, wave_speed(m->def));
+  for (std::size_t i = 0; i < colliders_.size(); ++i)
+    if (const Collider *c = colliders_.at_index(i); c != nullptr)
+      needs.speed = std::max(needs.speed, static_cast<double>(length(c->target.position - c->pose.position) / seconds));
+  emitters_.for_each([&](const Emitter &e) { needs.speed = std::max(needs.speed, static_cast<double>(e.def().speed)); });
+  return accuracy_.mode == LOAM_ACCURACY_BUDGET ? budget_.choose(accuracy_, needs, load())
+                                                : choose_substeps(accuracy_, needs);
 }
 
 void loam_world::run_step(float seconds) {
+  const auto begin = std::chrono::steady_clock::now();
   input_.seconds = seconds;
+  choice_ = choose_step(seconds);
+  input_.substeps = choice_.substeps;
+  input_.iterations = choice_.iterations;
+  input_.tolerance = accuracy_.mode == LOAM_ACCURACY_TOLERANCE ? static_cast<double>(accuracy_.tolerance) : 0;
   limit_stiffness();
   input_.colliders.clear();
   if (cloths_.any()) index_of_slot_.assign(colliders_.size(), 0);
@@ -212,6 +240,25 @@ void loam_world::run_step(float seconds) {
                        "%llu and would have to be %llu so far",
                        static_cast<unsigned long long>(untold), static_cast<unsigned long long>(def_.particle_capacity),
                        static_cast<unsigned long long>(capacity_needed())));
+  if (accuracy_.mode != LOAM_ACCURACY_BUDGET) return;
+  const double budget = static_cast<double>(accuracy_.budget);
+  budget_.learn(choice_, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
+                iteration_seconds(schedule()), load(), budget);
+  if (choice_.exceeds_budget)
+    throw Error(
+        LOAM_ERROR_BUDGET,
+        format("budget is %g s; %u substeps of %u iterations, which stability needs, take %g s; the step was done with them",
+               budget, choice_.substeps, choice_.iterations, choice_.least_budget));
+}
+
+loam_statistics loam_world::statistics() const {
+  loam_statistics values = backend_->statistics();
+  values.particles = backend_->particle_count();
+  values.capacity_needed = capacity_needed();
+  values.substeps = choice_.substeps;
+  values.substeps_reason = choice_.reason;
+  values.least_budget = choice_.least_budget;
+  return values;
 }
 
 void loam_world::count_killed() {
@@ -282,11 +329,10 @@ void loam_world::set_gravity(const float gravity[3]) {
   input_.wake = true;
 }
 
-void loam_world::set_accuracy(std::uint32_t substeps, std::uint32_t iterations) {
-  check_range("substeps", substeps, 1, 10000);
-  check_range("iterations", iterations, 1, 1000);
-  input_.substeps = substeps;
-  input_.iterations = iterations;
+void loam_world::set_accuracy(const loam_accuracy_def &def) {
+  check_accuracy(def);
+  if (def.mode == LOAM_ACCURACY_BUDGET && accuracy_.mode != LOAM_ACCURACY_BUDGET) budget_.reset();
+  accuracy_ = def;
 }
 
 // ----------------------------------------------------------------------------------------------------- materials ---

@@ -5,6 +5,7 @@
 
 #include <loam/loam.h>
 
+#include "scene/accuracy.h"
 #include "scene/cloth.h"
 #include "scene/emitter.h"
 #include "scene/field.h"
@@ -40,7 +41,9 @@ public:
   void shift_origin(const float offset[3]);
   void set_gravity(const float gravity[3]);
   void wake() { input_.wake = true; }
-  void set_accuracy(std::uint32_t substeps, std::uint32_t iterations);
+  void set_accuracy(const loam_accuracy_def &def);
+  const loam_accuracy_def &accuracy() const { return accuracy_; }
+  loam_statistics statistics() const;
   std::uint32_t backend_kind() const { return backend_kind_; }
   std::uint32_t instruction_set() const { return execution_.instruction_set; }
   loam::Backend &backend() { return *backend_; }
@@ -132,6 +135,8 @@ private:
   void check_room(std::uint64_t count) const; // for so many more particles
   void send_materials();
   void limit_stiffness(); // to what a substep can carry
+  loam::StepChoice choose_step(float seconds);
+  double load() const; // what a step's cost grows with
   void add_particles(loam_material_id material, const char *argument, loam::NewParticles particles, bool pinned);
 
   loam_world_def def_;
@@ -150,6 +155,9 @@ private:
   std::vector<std::uint64_t> removed_; // by killers in a step, by material
   std::unique_ptr<loam::Backend> backend_;
   loam::StepInput input_{};
+  loam_accuracy_def accuracy_ = loam::default_accuracy();
+  loam::BudgetControl budget_;
+  loam::StepChoice choice_{}; // of the last step
   std::uint64_t dropped_ = 0; // of all streams so far
   bool mapped_ = false;
   bool busy_ = false; // a step was begun and not waited for

@@ -14,7 +14,7 @@ using namespace loam;
 
 // Of what the scene holds, all that changes without being described anew.
 struct loam_world::Moving {
-  std::uint32_t substeps, iterations;
+  loam_accuracy_def accuracy;
   Vec3<float> gravity;
   std::uint64_t next_id; // of particles
   std::uint32_t wake;    // all that sleeps, with the next step
@@ -150,8 +150,7 @@ float float_of(std::uint32_t word) {
 
 loam_world::Moving loam_world::moving() const {
   Moving moving = {};
-  moving.substeps = input_.substeps;
-  moving.iterations = input_.iterations;
+  moving.accuracy = accuracy_;
   moving.gravity = input_.gravity;
   moving.next_id = next_id_;
   moving.wake = input_.wake ? 1 : 0;
@@ -339,8 +338,13 @@ template <class Fields> void loam_world::exchange(Fields &fields, Moving &moving
     fields.value(moving.killers[i]);
   }
 
-  fields.value(moving.substeps);
-  fields.value(moving.iterations);
+  fields.value(moving.accuracy.mode);
+  fields.value(moving.accuracy.substeps);
+  fields.value(moving.accuracy.iterations);
+  fields.value(moving.accuracy.most_substeps);
+  fields.value(moving.accuracy.courant);
+  fields.value(moving.accuracy.tolerance);
+  fields.value(moving.accuracy.budget);
   fields.value(moving.gravity);
   fields.value(moving.next_id);
   fields.value(moving.wake);
@@ -348,8 +352,7 @@ template <class Fields> void loam_world::exchange(Fields &fields, Moving &moving
 
 // Throws Error where a value could not have come from the calls that set it.
 void loam_world::check(const Moving &moving) const {
-  check_range("substeps", moving.substeps, 1, 10000);
-  check_range("iterations", moving.iterations, 1, 1000);
+  check_accuracy(moving.accuracy);
   const float gravity[3] = {moving.gravity.x, moving.gravity.y, moving.gravity.z};
   check_vector("gravity", gravity, 1e6);
   if (moving.next_id > 0xffffffffu) invalid("has given out more ids than there are");
@@ -519,8 +522,7 @@ void loam_world::restore(const std::byte *memory, std::uint64_t bytes) {
     throw;
   }
 
-  input_.substeps = moving.substeps;
-  input_.iterations = moving.iterations;
+  set_accuracy(moving.accuracy);
   input_.gravity = moving.gravity;
   next_id_ = moving.next_id;
   input_.wake = moving.wake != 0;

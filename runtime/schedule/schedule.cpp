@@ -39,6 +39,7 @@ void Schedule::compile(const SceneContents &contents) {
   if (contents.cloth && contents.particles) cloth_particles = add("cloth and particles");
   if (contents.surroundings.colliders) contacts = add("contacts");
   if (contents.cloth && contents.surroundings.colliders) cloth_contacts = add("cloth contacts");
+  if (contents.surroundings.tolerance) convergence = add("convergence");
   if (contents.velocity_smoothing) velocity_smoothing = add("velocity smoothing");
   speed_limit = add("speed limit");
   if (contents.surroundings.colliders) final_contacts = add("final contacts");

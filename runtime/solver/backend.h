@@ -92,6 +92,7 @@ struct KillerState {
 struct StepInput {
   float seconds;
   std::uint32_t substeps, iterations;
+  double tolerance = 0; // of the iterations, see convergence.h; 0: as many as given
   Vec3<float> gravity;
   std::vector<ColliderState> colliders;
   bool wake = false;                // all that sleeps
@@ -101,7 +102,9 @@ struct StepInput {
   std::vector<KillerState> killers = {};
   std::vector<std::uint64_t> *removed = nullptr; // where there are killers: receives how many of each material went
 
-  Surroundings surroundings() const { return {!colliders.empty(), source != nullptr, !fields.empty(), !killers.empty()}; }
+  Surroundings surroundings() const {
+    return {!colliders.empty(), source != nullptr, !fields.empty(), !killers.empty(), tolerance > 0};
+  }
 };
 
 struct NewParticles {
@@ -156,6 +159,7 @@ public:
   virtual void list_vertices(int shape, std::uint32_t object, std::vector<StateSection> &list) = 0;
   // After new state was written for so many particles: all that follows from it.
   virtual void adopt_state(std::uint64_t particles) = 0;
+  virtual double greatest_speed() = 0; // of particles and cloth
   virtual const loam_statistics &statistics() const = 0;
   // Of what the world contains now.
   virtual const Schedule &schedule(const Surroundings &surroundings) = 0;

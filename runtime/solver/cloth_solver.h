@@ -73,7 +73,6 @@ public:
   // What a substep needs to know.
   struct Substep {
     float seconds;
-    std::uint32_t iterations;
     Vec3<float> gravity;
     const ColliderView *colliders;
     int collider_count;
@@ -97,6 +96,10 @@ public:
   // Vertices that were split, in the last step so far; a new step begins with 0.
   std::uint64_t tear_count() const { return tears_; }
   void begin_step() { tears_ = 0; }
+  // Of triangles, at the start of the last substep.
+  double greatest_stretch();
+  // Vertices that there may be.
+  std::size_t row_count() const;
   std::uint64_t constraint_count() const { return constraints_; }
   std::uint64_t vertex_count() const { return vertices_; }
   std::uint64_t contact_count() const;
@@ -646,6 +649,23 @@ template <class Executor> void ClothSolver<Executor>::advance(const Substep &s) 
     executor_.for_each(cloth.vertex_count, AdvanceVertices{cloth.positions.data(), cloth.velocities.data(), s.seconds});
     if (s.particles.count > 0) cloth.particle_contact.apply(executor_, cloth.sheet(), s.particles, s.seconds);
   });
+}
+
+template <class Executor> double ClothSolver<Executor>::greatest_stretch() {
+  float stretch = 0;
+  const int width = executor_.constraint_width();
+  for_each_cloth([&](Cloth &cloth) {
+    stretch = std::max(stretch, executor_.reduce(cloth.membrane.batch_count() * width,
+                                                 GreatestStretch{cloth.membrane.fields.data(), width}));
+  });
+  return static_cast<double>(stretch);
+}
+
+template <class Executor> std::size_t ClothSolver<Executor>::row_count() const {
+  std::size_t sum = 0;
+  for (const Cloth &cloth : cloths_)
+    if (cloth.in_use) sum += static_cast<std::size_t>(cloth.spare_vertex);
+  return sum;
 }
 
 template <class Executor> std::uint64_t ClothSolver<Executor>::particle_contact_count() const {

@@ -176,7 +176,7 @@ template <class Executor> void Solver<Executor>::displace_fluids(const StepInput
     solve_fluids_in_turn(StartFluid<FluidMotion::displacements>{});
   }
   keep_out();
-  for (std::uint32_t i = 0; i < input.iterations; ++i) {
+  for (std::uint32_t i = 0; i < iterations_done_; ++i) {
     if (settings_.jacobi) {
       solve_fluids_at_once<FluidTurn::displacements>(rows);
       apply_at_once(rows);

@@ -47,6 +47,8 @@ public:
   void begin_step() {}
   void tear(float) {}
   static constexpr std::uint64_t tear_count() { return 0; }
+  static constexpr double greatest_stretch() { return 0; }
+  static constexpr std::size_t row_count() { return 0; }
   static constexpr std::uint64_t constraint_count() { return 0; }
   static constexpr std::uint64_t vertex_count() { return 0; }
   static constexpr std::uint64_t contact_count() { return 0; }

@@ -27,6 +27,7 @@
 #include "solver/collider_reactions.h"
 #include "solver/collider_shapes.h"
 #include "solver/contact_laws.h"
+#include "solver/convergence.h"
 #include "solver/fields.h"
 #include "solver/fluid_state.h"
 #include "solver/stages.h"
@@ -62,6 +63,7 @@ public:
     shapes_.deforming(shape)->list_state(object, list);
   }
   void adopt_state(std::uint64_t particles) override;
+  double greatest_speed() override;
   const loam_statistics &statistics() const override { return statistics_; }
   const Schedule &schedule(const Surroundings &surroundings) override {
     compile_schedule(surroundings);
@@ -142,6 +144,8 @@ private:
   using ClothSubstep = typename Cloths::Substep;
   ClothSubstep cloth_substep(const StepInput &input);
   void iterate(const StepInput &input);
+  void iterate_once(const StepInput &input);
+  template <class F> void for_each_body(F &&f); // f(count, velocities): the particles, and each cloth
   void solve_in_turn();
   void solve_at_once();
   void correct_positions();
@@ -224,6 +228,8 @@ private:
   bool contact_between_materials_ = false, distance_between_materials_ = false;
   Array<Row> jacobi_rows_[3], jacobi_drift_rows_[3];
   FluidState<Executor> fluids_{executor_};
+  Convergence<Executor> convergence_{executor_, settings_.jacobi};
+  std::uint32_t iterations_done_ = 0; // in this substep
   struct KeptFrame {
     Array<Row> positions, velocities;
     Array<float> strains, densities, histories;
@@ -545,6 +551,7 @@ template <class Executor> std::vector<MemoryUse> Solver<Executor>::memory() cons
   if (fluids_.bytes() > 0) uses.push_back({"fluids", fluids_.bytes()});
   if (cloth_.bytes() > 0) uses.push_back({"cloth", cloth_.bytes()});
   if (cloth_.self_contact_bytes() > 0) uses.push_back({"cloth self contact", cloth_.self_contact_bytes()});
+  if (convergence_.bytes() > 0) uses.push_back({"convergence", convergence_.bytes()});
   if (fields_.bytes() > 0) uses.push_back({"fields", fields_.bytes()});
   if (killer_views_.bytes() > 0) uses.push_back({"killers", killer_views_.bytes()});
   if (settings_.sleep_speed > 0)

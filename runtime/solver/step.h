@@ -11,6 +11,9 @@ template <class Executor> void Solver<Executor>::step(const StepInput &input) {
   up_ = g > 0.0f ? (-1.0f / g) * input.gravity : Vec3<float>{0, 1, 0};
   statistics_.substeps_done = 0;
   statistics_.pair_visits = 0;
+  statistics_.iterations_done = 0;
+  statistics_.iterations = statistics_.substeps_unsolved = 0;
+  statistics_.solution_error = statistics_.stretch = statistics_.penetration = statistics_.density_error = 0;
   statistics_.particles_entered = statistics_.particles_dropped = statistics_.particles_killed = 0;
   statistics_.step_seconds = 0;
   residual_ = 0;
@@ -52,11 +55,14 @@ template <class Executor> void Solver<Executor>::run_substeps(const StepInput &i
   for (std::uint32_t i = 0; i < input.substeps; ++i) {
     if (schedule_.sleep >= 0 && fields_.wake(count_, now_.positions.data(), now_.rests.data(), i)) awake_ = 1;
     const bool idle = schedule_.sleep >= 0 && count_ > 0 && all_asleep(input, i) && cloth_.empty();
+    iterations_done_ = 0;
     if (!idle) substep(input, i);
     if (input.source != nullptr) let_in(*input.source, static_cast<double>(input.seconds) / input.substeps);
     ++statistics_.substeps_done;
     statistics_.pairs = pairs_;
-    statistics_.pair_visits += pairs_ * input.iterations;
+    statistics_.pair_visits += pairs_ * iterations_done_;
+    statistics_.iterations_done += iterations_done_;
+    statistics_.iterations = std::max(statistics_.iterations, iterations_done_);
   }
 }
 
@@ -93,6 +99,7 @@ template <class Executor> void Solver<Executor>::compile_schedule(const Surround
   contents.particles =
       std::any_of(materials_.begin(), materials_.end(), [](const SolverMaterial &material) { return material.in_use; });
   schedule_.compile(contents);
+  if (schedule_.convergence < 0) convergence_.free();
   schedule_is_current_ = true;
   scheduled_ = surroundings;
   schedule_has_cloth_ = cloth;
@@ -316,8 +323,19 @@ template <class Executor> void Solver<Executor>::finish_statistics(const StepInp
   statistics_.cloth_tears = cloth_.tear_count();
   if (schedule_.sleep >= 0)
     statistics_.sleeping = static_cast<std::uint64_t>(executor_.reduce(count_, CountSleepers{now_.rests.data()}));
-  statistics_.contacts =
-      contact_count_ > 0 ? static_cast<std::uint64_t>(executor_.reduce(contact_count_, SumPlanes{contacts_.data()})) : 0;
+  statistics_.contacts = 0;
+  if (contact_count_ > 0) {
+    const MeasurePlanes::Value planes =
+        executor_.reduce(contact_count_, MeasurePlanes{contacts_.data(), now_.velocities.data(), h_});
+    statistics_.contacts = static_cast<std::uint64_t>(planes.count);
+    statistics_.penetration = static_cast<double>(planes.penetration);
+  }
+  if (fluids_.in_use && count_ > 0) {
+    const MeanCompression::Value compression =
+        executor_.reduce(count_, MeanCompression{fluids_.is_fluid.data(), now_.materials.data(), now_.strains.data()});
+    if (compression.count > 0) statistics_.density_error = compression.sum / static_cast<double>(compression.count);
+  }
+  statistics_.stretch = cloth_.greatest_stretch();
   statistics_.non_finite = static_cast<std::uint64_t>(motion.non_finite);
   statistics_.kinetic_energy = motion.kinetic_energy;
   statistics_.max_speed = motion.max_speed;

@@ -20,6 +20,8 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
   try {
     prepare_contacts(input, index);
     if (fluids_.in_use) reserve_fluids();
+    if (schedule_.convergence >= 0)
+      convergence_.reserve(static_cast<std::size_t>(settings_.particle_capacity) + cloth_.row_count());
     if (!cloth_.empty()) {
       cloth_.find_contacts(cloth_substep(input));
       if (schedule_.find_cloth_contacts >= 0) lap(schedule_.find_cloth_contacts, cloth_.vertex_count());
@@ -48,8 +50,12 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
       if (schedule_.viscosity >= 0) diffuse_velocities();
       prepare_fluids();
       if (schedule_.surface_tension >= 0) pull_surfaces();
-      start_fluids();
     }
+  }
+  const auto bodies = [this](auto &&f) { for_each_body(f); };
+  if (schedule_.convergence >= 0) convergence_.begin(bodies);
+  if constexpr (fluid_is_built) {
+    if (fluids_.in_use && count_ > 0) start_fluids();
   }
 
   iterate(input);
@@ -147,7 +153,6 @@ template <class Executor> void Solver<Executor>::sweep_contacts(const Reactions 
 
 template <class Executor> typename Solver<Executor>::ClothSubstep Solver<Executor>::cloth_substep(const StepInput &input) {
   return {h_,
-          input.iterations,
           input.gravity,
           collider_views_.data(),
           static_cast<int>(views_.size()),
@@ -157,38 +162,70 @@ template <class Executor> typename Solver<Executor>::ClothSubstep Solver<Executo
            settings_.kernel_radius}};
 }
 
-// The nonlinear iterations: inelastic constraints, position correction, cloth, contacts.
+// The nonlinear iterations: as many as asked for, or until they have converged.
 template <class Executor> void Solver<Executor>::iterate(const StepInput &input) {
-  for (std::uint32_t i = 0; i < input.iterations; ++i) {
-    // Without particles, lists and visits are those of a substep that had some.
-    if (count_ > 0) {
-      if (settings_.jacobi) {
-        solve_at_once();
-      } else {
-        solve_in_turn();
-      }
-      if (schedule_.position_correction >= 0) correct_positions();
+  if (schedule_.convergence < 0) {
+    for (; iterations_done_ < input.iterations; ++iterations_done_) iterate_once(input);
+    return;
+  }
+  const auto bodies = [this](auto &&f) { for_each_body(f); };
+  const double fall = static_cast<double>(h_ * length(input.gravity));
+  while (iterations_done_ < input.iterations && !(iterations_done_ > 1 && convergence_.error() <= input.tolerance)) {
+    convergence_.begin_iteration(bodies);
+    iterate_once(input);
+    ++iterations_done_;
+    convergence_.end_iteration(bodies, fall);
+    lap(schedule_.convergence, particles() + cloth_.vertex_count());
+  }
+  statistics_.solution_error = std::max(statistics_.solution_error, convergence_.error());
+  if (convergence_.error() > input.tolerance) ++statistics_.substeps_unsolved;
+}
+
+template <class Executor> template <class F> void Solver<Executor>::for_each_body(F &&f) {
+  if (count_ > 0) f(count_, now_.velocities.data());
+  cloth_.for_each_sheet([&](int vertices, const Row *, Row *velocities) { f(vertices, velocities); });
+}
+
+template <class Executor> double Solver<Executor>::greatest_speed() {
+  float speed = 0;
+  executor_.session([&] {
+    for_each_body([&](int count, const Row *velocities) {
+      speed = std::max(speed, executor_.reduce(count, GreatestSpeedBeside{velocities, {0, 0, 0}}));
+    });
+  });
+  return static_cast<double>(speed);
+}
+
+// Inelastic constraints and fluids, position correction, cloth, contacts.
+template <class Executor> void Solver<Executor>::iterate_once(const StepInput &input) {
+  // Without particles, lists and visits are those of a substep that had some.
+  if (count_ > 0) {
+    if (settings_.jacobi) {
+      solve_at_once();
+    } else {
+      solve_in_turn();
     }
-    if (!cloth_.empty()) {
-      cloth_.solve(cloth_substep(input));
-      lap(schedule_.solve_cloth, cloth_.constraint_count());
-      if (schedule_.cloth_self_contact >= 0) {
-        cloth_.solve_self_contacts(cloth_substep(input));
-        lap(schedule_.cloth_self_contact, cloth_.self_contact_count());
-      }
-      if (schedule_.cloth_particles >= 0) {
-        cloth_.solve_particle_contacts(cloth_substep(input));
-        lap(schedule_.cloth_particles, cloth_.particle_contact_count());
-      }
+    if (schedule_.position_correction >= 0) correct_positions();
+  }
+  if (!cloth_.empty()) {
+    cloth_.solve(cloth_substep(input));
+    lap(schedule_.solve_cloth, cloth_.constraint_count());
+    if (schedule_.cloth_self_contact >= 0) {
+      cloth_.solve_self_contacts(cloth_substep(input));
+      lap(schedule_.cloth_self_contact, cloth_.self_contact_count());
     }
-    if (contact_count_ > 0) {
-      executor_.for_each(contact_count_, SolveContacts{contacts_.data(), now_.velocities.data(), h_});
-      lap(schedule_.contacts, static_cast<std::uint64_t>(contact_count_));
+    if (schedule_.cloth_particles >= 0) {
+      cloth_.solve_particle_contacts(cloth_substep(input));
+      lap(schedule_.cloth_particles, cloth_.particle_contact_count());
     }
-    if (schedule_.cloth_contacts >= 0) {
-      cloth_.solve_contacts(cloth_substep(input));
-      lap(schedule_.cloth_contacts, cloth_.contact_count());
-    }
+  }
+  if (contact_count_ > 0) {
+    executor_.for_each(contact_count_, SolveContacts{contacts_.data(), now_.velocities.data(), h_});
+    lap(schedule_.contacts, static_cast<std::uint64_t>(contact_count_));
+  }
+  if (schedule_.cloth_contacts >= 0) {
+    cloth_.solve_contacts(cloth_substep(input));
+    lap(schedule_.cloth_contacts, cloth_.contact_count());
   }
 }
 

@@ -8,8 +8,10 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "accuracy.h"
 #include "options.h"
 #include "run.h"
+#include "tune.h"
 
 int main(int argc, char **argv) {
   runner::Options options;
@@ -17,7 +19,17 @@ int main(int argc, char **argv) {
       "Simulates a scene and writes, for each frame, the particles (PLY) and a picture (PNG); at the end stats.json and\n"
       "series.csv. Ctrl-C ends a run early: what was simulated so far is written, and the exit status is 130.");
   app.add_option("scene", options.scene, "Scene file (TOML)")->required();
-  app.add_option("--out", options.output, "Folder for the results; made if it does not exist")->required();
+  CLI::Option *output = app.add_option("--out", options.output, "Folder for the results; made if it does not exist");
+  app.add_flag(
+         "--tune", options.tune,
+         "Run nothing: measure on this machine what settings of accuracy cost in the scene and how far they are from a\n"
+         "reference, print the table and recommend one")
+      ->excludes(output);
+  std::string accuracy;
+  app.add_option("--accuracy", accuracy,
+                 "Instead of the scene's: fast, balanced, accurate or reference; tolerance=SHARE, the error of a substep's\n"
+                 "solution; budget=MILLISECONDS of a frame; or SUBSTEPSxITERATIONS")
+      ->type_name("SETTING");
   app.add_option("--frames", options.frames, "Frames to simulate, instead of the scene's")->check(CLI::Range(1, 1000000));
   app.add_option("--scale", options.scale, "Multiply the number of particles by about this, at the same size of the scene")
       ->check(CLI::Range(1e-3, 1e6));
@@ -53,6 +65,9 @@ int main(int argc, char **argv) {
   CLI11_PARSE(app, argc, argv);
 
   try {
+    if (!accuracy.empty()) options.accuracy = runner::parse_accuracy(accuracy);
+    if (options.tune) return runner::tune(options);
+    if (options.output.empty()) return app.exit(CLI::RequiredError("--out or --tune"));
     return runner::run(options);
   } catch (const std::exception &error) {
     fmt::print(stderr, "loam-run: {}\n", error.what());

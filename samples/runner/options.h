@@ -16,6 +16,8 @@ struct Options {
   std::uint32_t backend = LOAM_BACKEND_AUTO;
   std::uint32_t instruction_set = LOAM_INSTRUCTION_SET_AUTO;
   std::optional<std::uint32_t> solver;
+  std::optional<loam_accuracy_def> accuracy;
+  bool tune = false;
   std::uint32_t threads = 0; // 0: as many as the machine has
   bool pictures = true;
   std::uint64_t picture_every = 1;

@@ -22,7 +22,8 @@ std::string format_duration(double seconds) {
                    : fmt::format("{}:{:02}", minutes, whole % 60);
 }
 
-ProgressBar::ProgressBar(std::uint64_t total) : total_(total), terminal_(LOAM_RUN_IS_TERMINAL) {}
+ProgressBar::ProgressBar(std::uint64_t total, const char *what)
+    : total_(total), what_(what), terminal_(LOAM_RUN_IS_TERMINAL) {}
 
 ProgressBar::~ProgressBar() {
   if (line_open_) std::fputc('\n', stderr);
@@ -40,7 +41,7 @@ void ProgressBar::show(std::uint64_t done, const std::string &note) {
   constexpr int width = 30;
   const int filled = static_cast<int>(share * width);
   const std::string bar = std::string(filled, '#') + std::string(width - filled, '.');
-  const std::string line = fmt::format("[{}] {}/{} frames, {} elapsed, {} left, {}", bar, done, total_,
+  const std::string line = fmt::format("[{}] {}/{} {}, {} elapsed, {} left, {}", bar, done, total_, what_,
                                        format_duration(elapsed), done > 0 ? format_duration(left) : "?", note);
   if (terminal_) {
     fmt::print(stderr, "\r{}\x1b[K", line);

@@ -10,7 +10,7 @@ namespace runner {
 class ProgressBar {
 public:
   // On a terminal the line is redrawn in place; elsewhere (a log file) a line is printed now and then.
-  explicit ProgressBar(std::uint64_t total);
+  explicit ProgressBar(std::uint64_t total, const char *what = "frames");
   ~ProgressBar();
   ProgressBar(const ProgressBar &) = delete;
   ProgressBar &operator=(const ProgressBar &) = delete;
@@ -20,6 +20,7 @@ public:
 private:
   using Clock = std::chrono::steady_clock;
   std::uint64_t total_;
+  const char *what_;
   bool terminal_;
   bool line_open_ = false;
   Clock::time_point start_ = Clock::now();

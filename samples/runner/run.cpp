@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include "accuracy.h"
 #include "containment.h"
 #include "error.h"
 #include "output_folder.h"
@@ -36,6 +37,8 @@ std::uint64_t count_watched(const Scene &scene, const Particles &particles) {
 
 bool due(std::uint64_t frame, std::uint64_t every) { return every != 0 && frame % every == 0; }
 
+} // namespace
+
 Scene prepare_scene(const Options &options) {
   Scene scene = read_scene(options.scene);
   if (options.scale != 1) scale_particle_count(scene, options.scale);
@@ -43,6 +46,7 @@ Scene prepare_scene(const Options &options) {
   scene.world.instruction_set = options.instruction_set;
   scene.world.thread_count = options.threads;
   if (options.solver) scene.world.solver = *options.solver;
+  if (options.accuracy) scene.accuracy = options.accuracy;
   if (options.until_still) {
     if (!scene.watch) throw Error(fmt::format("{}: --until-still needs a [watch] table in the scene", scene.path.string()));
     scene.frames *= 10; // a limit, should the region never empty
@@ -50,8 +54,6 @@ Scene prepare_scene(const Options &options) {
   if (options.frames) scene.frames = *options.frames;
   return scene;
 }
-
-} // namespace
 
 int run(const Options &options) {
   const auto previous_handler = std::signal(SIGINT, on_interrupt); // before the scene is filled, which may take long
@@ -73,10 +75,9 @@ int run(const Options &options) {
   statistics.backend = simulation.backend();
   statistics.instruction_set = simulation.instruction_set();
   statistics.has_sides = containment.sides() != 0;
-  fmt::print(stderr,
-             "{}: {} particles, kernel radius {:.4g} m, {} substeps of {} iterations, {} frames, {}{}{}, {} thread{}\n",
+  fmt::print(stderr, "{}: {} particles, kernel radius {:.4g} m, accuracy {}, {} frames, {}{}{}, {} thread{}\n",
              scene.title.empty() ? scene.path.string() : scene.title, statistics.particles, scene.world.kernel_radius,
-             scene.world.substeps, scene.world.iterations, scene.frames, statistics.backend,
+             describe(simulation.accuracy()), scene.frames, statistics.backend,
              statistics.instruction_set.empty() ? "" : " ", statistics.instruction_set, threads, threads == 1 ? "" : "s");
 
   double empty_frames = 0; // for how many frames the watched region has been empty
@@ -114,6 +115,8 @@ int run(const Options &options) {
   if (!statistics.frames.empty()) statistics.particles = statistics.frames.back().statistics.particles;
   statistics.interrupted = interrupted != 0;
   statistics.memory = simulation.memory();
+  statistics.accuracy = describe(simulation.accuracy());
+  statistics.over_budget = simulation.over_budget();
   statistics.state_hash = simulation.state_hash();
   output.write("series.csv", make_series_csv(statistics));
   output.write("stats.json", make_statistics_json(scene, statistics));

@@ -9,4 +9,7 @@ namespace runner {
 // Throws Error.
 int run(const Options &options);
 
+// The scene with what the command line changes. Throws Error.
+Scene prepare_scene(const Options &options);
+
 } // namespace runner

@@ -24,9 +24,14 @@ void RunStatistics::add_stages(const std::vector<loam_stage> &frame) {
 std::string make_statistics_json(const Scene &scene, const RunStatistics &run) {
   using Json = nlohmann::ordered_json;
   const loam_statistics last = run.frames.empty() ? loam_statistics{} : run.frames.back().statistics;
-  std::uint64_t pair_visits = 0, speed_limited = 0, strain_limited = 0, outside_peak = 0;
-  double peak_speed = 0, stiffness_share = 1;
+  std::uint64_t substeps = 0, iterations = 0, pair_visits = 0, speed_limited = 0, strain_limited = 0, outside_peak = 0;
+  double peak_speed = 0, stiffness_share = 1, solution_error = 0, penetration = 0, stretch = 0;
   for (const FrameRecord &frame : run.frames) {
+    substeps += frame.statistics.substeps;
+    iterations += frame.statistics.iterations_done;
+    solution_error = std::max(solution_error, frame.statistics.solution_error);
+    penetration = std::max(penetration, frame.statistics.penetration);
+    stretch = std::max(stretch, frame.statistics.stretch);
     pair_visits += frame.statistics.pair_visits;
     speed_limited += frame.statistics.speed_limited;
     strain_limited += frame.statistics.strain_limited;
@@ -46,8 +51,11 @@ std::string make_statistics_json(const Scene &scene, const RunStatistics &run) {
   json["frame_rate"] = scene.frame_rate;
   json["simulated_seconds"] = frames / scene.frame_rate;
   json["kernel_radius"] = scene.world.kernel_radius;
-  json["substeps"] = scene.world.substeps;
-  json["iterations"] = scene.world.iterations;
+  json["accuracy"] = run.accuracy;
+  json["substeps_per_frame"] = frames > 0 ? static_cast<double>(substeps) / frames : 0.0;
+  json["iterations_per_substep"] = substeps > 0 ? static_cast<double>(iterations) / static_cast<double>(substeps) : 0.0;
+  json["solution_error"] = solution_error;
+  json["over_budget"] = run.over_budget;
   json["solver"] = scene.world.solver == LOAM_SOLVER_JACOBI ? "jacobi" : "gauss-seidel";
   json["backend"] = run.backend;
   json["instruction_set"] = run.instruction_set;
@@ -78,16 +86,21 @@ std::string make_statistics_json(const Scene &scene, const RunStatistics &run) {
   json["sleeping"] = last.sleeping;
   json["virial"] = last.virial;
   json["residual"] = last.residual;
+  json["density_error"] = last.density_error;
+  json["greatest_stretch"] = stretch;
+  json["deepest_penetration"] = penetration;
   json["state_hash"] = fmt::format("{:016x}", run.state_hash);
   return json.dump(2) + "\n";
 }
 
 std::string make_series_csv(const RunStatistics &run) {
-  std::string csv = "frame,time,watched,max_speed,mean_speed,virial,residual,outside,step_seconds,sleeping\n";
+  std::string csv = "frame,time,watched,max_speed,mean_speed,virial,residual,outside,step_seconds,sleeping,substeps,"
+                    "iterations,solution_error\n";
   for (const FrameRecord &frame : run.frames) {
     const loam_statistics &s = frame.statistics;
-    csv += fmt::format("{},{:.6f},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g},{}\n", frame.frame, frame.time, frame.watched,
-                       s.max_speed, s.mean_speed, s.virial, s.residual, frame.outside, s.step_seconds, s.sleeping);
+    csv += fmt::format("{},{:.6f},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g},{},{},{},{:.6g}\n", frame.frame, frame.time,
+                       frame.watched, s.max_speed, s.mean_speed, s.virial, s.residual, frame.outside, s.step_seconds,
+                       s.sleeping, s.substeps, s.iterations_done, s.solution_error);
   }
   return csv;
 }

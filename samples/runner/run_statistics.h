@@ -30,6 +30,8 @@ struct RunStatistics {
   std::vector<FrameRecord> frames;
   std::vector<loam_stage> stages; // summed over the frames
   std::vector<loam_memory> memory;
+  std::string accuracy;          // in the words of accuracy.h
+  std::uint64_t over_budget = 0; // frames that stability made longer than the budget
   std::uint64_t state_hash = 0;
 
   void add_stages(const std::vector<loam_stage> &frame);

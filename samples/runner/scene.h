@@ -166,6 +166,7 @@ struct Scene {
   loam_world_def world{};              // without hooks and particle_capacity
   std::uint64_t particle_capacity = 0; // 0: as many as all emitters make
   Place world_place;
+  std::optional<loam_accuracy_def> accuracy; // none: the world's substeps and iterations
   double frame_rate = 60;
   std::uint64_t frames = 120;
   std::vector<SceneMaterial> materials;

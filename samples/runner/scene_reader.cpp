@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "accuracy.h"
 #include "cloth_reader.h"
 #include "collider_meshes.h"
 #include "distance_field.h"
@@ -92,6 +93,16 @@ private:
     table->read("particle_capacity", scene_.particle_capacity);
     table->read("substeps", def.substeps);
     table->read("iterations", def.iterations);
+    if (std::string accuracy; table->has("accuracy")) {
+      for (const char *other : {"substeps", "iterations"})
+        if (table->has(other)) table->fail(other, "is what \"accuracy\" chooses; give one of them");
+      table->read("accuracy", accuracy);
+      try {
+        scene_.accuracy = parse_accuracy(accuracy);
+      } catch (const Error &error) {
+        table->fail("accuracy", error.what());
+      }
+    }
     table->read("solver", def.solver, solvers);
     table->read("plasticity", def.plasticity, plasticities);
     table->read("multiplier", def.multiplier, multipliers);

@@ -102,6 +102,7 @@ bool Simulation::build(std::uint64_t particle_capacity) {
   loam_world *world = nullptr;
   check(loam_world_create(&world_def, &world), scene_->world_place);
   world_.reset(world);
+  if (scene_->accuracy) check(loam_world_use_accuracy(world, &*scene_->accuracy), scene_->world_place);
 
   std::vector<loam_material_id> materials;
   for (const SceneMaterial &material : scene_->materials) {
@@ -278,8 +279,36 @@ void Simulation::step() {
   }
   deform(end, &loam_collider_move_vertices);
   release_attachments(end);
-  check(loam_world_step(world_.get(), static_cast<float>(1.0 / scene_->frame_rate)), {});
+  const loam_status status = loam_world_step(world_.get(), static_cast<float>(1.0 / scene_->frame_rate));
+  if (status == LOAM_ERROR_BUDGET)
+    ++over_budget_; // the step was done
+  else
+    check(status, {});
   ++frame_;
+}
+
+Simulation::State Simulation::save() const {
+  std::uint64_t bytes = 0;
+  check(loam_snapshot_size(world_.get(), &bytes), {});
+  State state = {std::vector<std::byte>(bytes), spins_, frame_};
+  check(loam_snapshot_save(world_.get(), state.world.data(), bytes, nullptr), {});
+  return state;
+}
+
+void Simulation::restore(const State &state) {
+  check(loam_snapshot_restore(world_.get(), state.world.data(), state.world.size()), {});
+  spins_ = state.spins;
+  frame_ = state.frame;
+}
+
+void Simulation::use_accuracy(const loam_accuracy_def &accuracy) {
+  check(loam_world_use_accuracy(world_.get(), &accuracy), {});
+}
+
+loam_accuracy_def Simulation::accuracy() const {
+  loam_accuracy_def def;
+  check(loam_world_get_accuracy(world_.get(), &def, sizeof def), {});
+  return def;
 }
 
 Particles Simulation::read_particles() const {

@@ -1,6 +1,7 @@
 // A scene brought to life in a Loam world, through the public C interface only.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -19,6 +20,20 @@ public:
   // Throws Error with the library's own text and the place in the scene file that it is about.
   // Colliders on hinges get motions as they turn.
   explicit Simulation(Scene &scene);
+
+  // What a frame begins with.
+  struct State {
+    std::vector<std::byte> world;
+    std::vector<double> spins;
+    std::uint64_t frame;
+  };
+  State save() const;
+  // Accuracy becomes what it was then.
+  void restore(const State &state);
+  void use_accuracy(const loam_accuracy_def &accuracy);
+  loam_accuracy_def accuracy() const;
+  // Frames that took what stability needs, more than their budget.
+  std::uint64_t over_budget() const { return over_budget_; }
 
   // One frame of 1 / frame_rate seconds.
   void step();
@@ -60,7 +75,7 @@ private:
   std::vector<std::uint64_t> emitter_ends_; // of each emitter the id after its last particle's; streams have none
   std::vector<double> spins_;               // of the colliders' hinges, radians a second
   std::uint64_t stream_count_ = 0;          // particles that all streams make
-  std::uint64_t frame_ = 0;
+  std::uint64_t frame_ = 0, over_budget_ = 0;
   std::uint64_t particle_count_ = 0;
 };
 

@@ -69,6 +69,13 @@ public:
     attempt("map", [&] { return loam_particles_map(world_, &view); });
     attempt("unmap", [&] { return loam_particles_unmap(world_); });
     attempt("step", [&] { return loam_world_step(world_, 1e-3f); });
+    loam_accuracy_def accuracy;
+    attempt("default", [&] { return loam_accuracy_def_default(&accuracy, sizeof accuracy); });
+    accuracy.mode = LOAM_ACCURACY_TOLERANCE;
+    accuracy.tolerance = 0.1f;
+    accuracy.substeps = 1;
+    attempt("tolerance", [&] { return loam_world_use_accuracy(world_, &accuracy); });
+    attempt("step", [&] { return loam_world_step(world_, 1e-3f); });
   }
   std::uint64_t hash() const {
     std::uint64_t hash = 0;

@@ -179,6 +179,7 @@ TEST_F(SmallWorld, EveryFunctionSaysWhetherItMayBeCalledDuringAStep) {
   std::uint64_t number = 0;
   std::uint32_t count = 0;
   loam_statistics statistics = {};
+  loam_accuracy_def accuracy = {};
   statistics.struct_size = sizeof statistics;
   loam_particle_view view = empty_view();
   loam_cloth_view cloth_view = {};
@@ -211,6 +212,8 @@ TEST_F(SmallWorld, EveryFunctionSaysWhetherItMayBeCalledDuringAStep) {
       {"loam_world_step_async", [&] { return loam_world_step_async(w, 0.01f); }},
       {"loam_world_set_gravity", [&] { return loam_world_set_gravity(w, vector); }},
       {"loam_world_set_accuracy", [&] { return loam_world_set_accuracy(w, 1, 1); }},
+      {"loam_world_use_accuracy", [&] { return loam_world_use_accuracy(w, &accuracy); }},
+      {"loam_world_get_accuracy", [&] { return loam_world_get_accuracy(w, &accuracy, sizeof accuracy); }},
       {"loam_world_wake", [&] { return loam_world_wake(w); }},
       {"loam_world_state_hash", [&] { return loam_world_state_hash(w, &number); }},
       {"loam_world_get_statistics", [&] { return loam_world_get_statistics(w, &statistics); }},

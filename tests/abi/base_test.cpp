@@ -24,7 +24,8 @@ TEST(Base, EveryStatusHasItsName) {
                          "LOAM_ERROR_INVALID_SNAPSHOT",
                          "LOAM_ERROR_SNAPSHOT_MISMATCH",
                          "LOAM_ERROR_BUSY",
-                         "LOAM_ERROR_NOT_BUILT"};
+                         "LOAM_ERROR_NOT_BUILT",
+                         "LOAM_ERROR_BUDGET"};
   for (loam_status status = 0; status < loam_status(std::size(names)); ++status)
     EXPECT_STREQ(loam_status_name(status), names[status]);
   for (const loam_status unknown : {-1, loam_status(std::size(names)), 1000, INT32_MIN, INT32_MAX})

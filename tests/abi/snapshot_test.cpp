@@ -65,14 +65,14 @@ TEST_F(SmallWorld, WhatIsNoSnapshotIsRefused) {
   };
   Bytes none(1), other = saved, newer = saved, swapped = saved, longer = saved, shorter = saved, flipped = saved;
   other[0] = std::byte{'l'};
-  newer[8] = std::byte{6};
+  newer[8] = std::byte{7};
   std::reverse(swapped.begin() + 12, swapped.begin() + 16);
   longer.push_back(std::byte{0});
   shorter.pop_back();
   flipped[saved.size() / 2] ^= std::byte{1};
   broken({"header"}, none);
   broken({"LOAMSNAP"}, other);
-  broken({"version 6", "version 5"}, newer);
+  broken({"version 7", "version 6"}, newer);
   broken({"byte order"}, swapped);
   broken({std::to_string(saved.size()), std::to_string(saved.size() + 1)}, longer);
   broken({std::to_string(saved.size()), std::to_string(saved.size() - 1)}, shorter);

@@ -44,6 +44,24 @@ TEST_P(SameBits, ForAnyNumberOfThreads) {
   }
 }
 
+/* How often it iterates, and into how many substeps it cuts a step, follows from sums over all particles. */
+TEST_P(SameBits, ForAnyNumberOfThreadsAndInstructionSetWithATolerance) {
+  loam_accuracy_def accuracy;
+  ASSERT_EQ(loam_accuracy_def_default(&accuracy, sizeof accuracy), LOAM_OK);
+  accuracy.mode = LOAM_ACCURACY_TOLERANCE;
+  accuracy.tolerance = 0.05f;
+  accuracy.substeps = 0;
+  accuracy.iterations = 20;
+  const int frames = std::min(this->frames(), 6);
+  loam_world_def def = definition();
+  const std::uint64_t alone = scene_.hash_after(def, frames, &accuracy);
+  def.thread_count = 5;
+  EXPECT_EQ(scene_.hash_after(def, frames, &accuracy), alone);
+  if (hooks::short_run()) return;
+  def.instruction_set = LOAM_INSTRUCTION_SET_PORTABLE;
+  EXPECT_EQ(scene_.hash_after(def, frames, &accuracy), alone);
+}
+
 TEST_P(SameBits, OnSixteenThreadsOfTheHost) {
   // Far more threads than a small machine has processors: fewer frames, in every order that they preempt each other.
   hooks::ThreadJobs jobs;

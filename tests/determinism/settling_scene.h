@@ -22,8 +22,9 @@ struct SettlingScene {
     return def;
   }
   /* The state's hash after so many frames of 1/240 s, the mesh moving through the heap all the while. */
-  std::uint64_t hash_after(const loam_world_def &def, int frames) const {
+  std::uint64_t hash_after(const loam_world_def &def, int frames, const loam_accuracy_def *accuracy = nullptr) const {
     scenes::World world(def, sand);
+    if (accuracy != nullptr) scenes::require(loam_world_use_accuracy(world.get(), accuracy), "accuracy");
     scenes::Scene block = clay;
     block.planes.clear();
     world.add(block);

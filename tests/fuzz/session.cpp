@@ -265,8 +265,17 @@ void Session::change_settings(Random &random) {
     call("set gravity", Expect::success, [&] { return loam_world_set_gravity(world_, gravity); });
   } else {
     const auto substeps = std::uint32_t(random.log_between(1, 24)), iterations = std::uint32_t(random.log_between(1, 9));
-    if (call("set accuracy", Expect::success, [&] { return loam_world_set_accuracy(world_, substeps, iterations); }))
-      now_.substeps = substeps;
+    const auto set = [&] {
+      if (random.chance(0.7)) return loam_world_set_accuracy(world_, substeps, iterations);
+      loam_accuracy_def def;
+      if (const loam_status status = loam_accuracy_def_default(&def, sizeof def); status != LOAM_OK) return status;
+      def.mode = LOAM_ACCURACY_TOLERANCE;
+      def.substeps = substeps;
+      def.iterations = iterations + 2;
+      def.tolerance = random.log_between(LOAM_LEAST_TOLERANCE, 0.5f);
+      return loam_world_use_accuracy(world_, &def);
+    };
+    if (call("set accuracy", Expect::success, set)) now_.substeps = substeps;
   }
 }
 

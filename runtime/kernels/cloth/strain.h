@@ -64,6 +64,26 @@ private:
   }
 };
 
+// What the constraints' triangles show, at the start of the substep; places without a triangle show nothing.
+struct GreatestStretch {
+  using Value = float;
+  const float *fields;
+  int width;
+  LOAM_FN static Value identity() { return 0.0f; }
+  LOAM_FN Value operator()(int place) const {
+    const float *own = fields + static_cast<long>(place / width) * MembraneField::count * width + place % width;
+    const Vec3<float> warp = vector(own, MembraneField::warp), weft = vector(own, MembraneField::weft);
+    const float strain = SquaredStretch{dot(warp, warp), dot(weft, weft), dot(warp, weft)}.strain();
+    return is_finite(strain) ? strain : 0.0f;
+  }
+  LOAM_FN static Value combine(Value a, Value b) { return maximum(a, b); }
+
+private:
+  LOAM_FN Vec3<float> vector(const float *own, int field) const {
+    return {own[field * width], own[(field + 1) * width], own[(field + 2) * width]};
+  }
+};
+
 struct GreatestStrain {
   using Value = float;
   TriangleStrains strains;

@@ -95,12 +95,45 @@ struct ContactMoment {
   LOAM_FN static Value combine(Value a, Value b) { return a + b; }
 };
 
-struct SumPlanes {
-  using Value = long long;
+// Contact planes, and how deep a particle ended within the deepest.
+struct MeasurePlanes {
+  struct Value {
+    long long count;
+    float penetration; // m
+  };
   const Contact *contacts;
-  LOAM_FN static Value identity() { return 0; }
-  LOAM_FN Value operator()(int i) const { return contacts[i].plane_count; }
-  LOAM_FN static Value combine(Value a, Value b) { return a + b; }
+  const Row *velocities;
+  float substep;
+  LOAM_FN static Value identity() { return {0, 0}; }
+  LOAM_FN Value operator()(int i) const {
+    const Contact &contact = contacts[i];
+    const Vec3<float> way = substep * xyz(velocities[contact.particle]);
+    Value value = {contact.plane_count, 0};
+    for (int k = 0; k < contact.plane_count; ++k)
+      value.penetration = maximum(value.penetration, 0.0f - (contact.planes[k].gap + dot(contact.planes[k].normal, way)));
+    return value;
+  }
+  LOAM_FN static Value combine(const Value &a, const Value &b) {
+    return {a.count + b.count, maximum(a.penetration, b.penetration)};
+  }
+};
+
+// Of fluids: density over rest density less 1, where it is more. A fluid keeps 1 / density - 1 for its strain.
+struct MeanCompression {
+  struct Value {
+    double sum;
+    long long count;
+  };
+  const float *is_fluid; // of each material: 1 or 0
+  const std::uint32_t *materials;
+  const float *strains;
+  LOAM_FN static Value identity() { return {0, 0}; }
+  LOAM_FN Value operator()(int i) const {
+    if (!(is_fluid[materials[i]] > 0.0f)) return identity();
+    const float compression = 1.0f / (1.0f + strains[6 * static_cast<long>(i)]) - 1.0f;
+    return {compression > 0.0f && is_finite(compression) ? compression : 0.0, 1};
+  }
+  LOAM_FN static Value combine(const Value &a, const Value &b) { return {a.sum + b.sum, a.count + b.count}; }
 };
 
 struct SumTerms {
