@@ -46,7 +46,7 @@ typedef struct loam_accuracy_def {
   uint32_t substeps;
 
   /* Iterations of a substep. FIXED: so many; 1 to 1000, default 5. TOLERANCE: at most so many; at least 3. BUDGET: so many where the budget pays for the substeps
-   * that stability needs; fewer (2 at least) only where it does not, more only where most_substeps are reached. */
+   * that stability needs; fewer (2 at least) where it does not, and half as many or more where whole substeps leave time over. */
   uint32_t iterations;
 
   uint32_t most_substeps; /* that are chosen: 1 to 10000; default 256 */

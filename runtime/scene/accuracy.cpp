@@ -139,7 +139,14 @@ StepChoice BudgetControl::choose(const loam_accuracy_def &def, const StepNeeds &
     choice.reason = paid > def.most_substeps ? LOAM_SUBSTEPS_MOST : LOAM_SUBSTEPS_BUDGET;
     choice.substeps = static_cast<std::uint32_t>(std::min<double>(paid, def.most_substeps));
   }
-  const double iterations = std::floor((target / choice.substeps - substep) / iteration);
+  const auto paid_iterations = [&](double n) { return std::floor((target / n - substep) / iteration); };
+  double iterations = paid_iterations(choice.substeps);
+  // Few substeps with many iterations: one more with at least half of them is more accurate.
+  if (choice.substeps < def.most_substeps && iterations > 1.5 * def.iterations &&
+      paid_iterations(choice.substeps + 1) >= 0.5 * def.iterations) {
+    iterations = paid_iterations(++choice.substeps);
+    choice.reason = LOAM_SUBSTEPS_BUDGET;
+  }
   choice.iterations = static_cast<std::uint32_t>(std::clamp<double>(iterations, least_iterations, 1000));
   return choice;
 }
@@ -154,8 +161,7 @@ void BudgetControl::learn(const StepChoice &choice, double seconds, double itera
   if (learnt_ >= 2) {
     per_substep = std::min(per_substep, 3 * per_substep_);
     per_iteration = std::min(per_iteration, 3 * per_iteration_);
-    // What no choice could have saved is not owed.
-    debt_ = choice.exceeds_budget ? 0 : std::clamp(debt_ + (seconds - budget), -budget, 4 * budget);
+    debt_ = std::clamp(debt_ + (seconds - budget), -budget, 8 * budget);
   }
   per_substep_ += share * (per_substep - per_substep_);
   per_iteration_ += share * (per_iteration - per_iteration_);

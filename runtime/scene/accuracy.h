@@ -44,8 +44,10 @@ public:
   // A step as chosen took so long, so much of it in stages that run once an iteration.
   void learn(const StepChoice &choice, double seconds, double iteration_seconds, double load, double budget);
 
-  // Learnt costs are forgotten.
+  // What was learnt is forgotten.
   void reset() { *this = BudgetControl(); }
+  // What earlier steps took too much or too little does not count.
+  void forgive() { debt_ = 0; }
 
 private:
   double per_substep_ = 0, per_iteration_ = 0; // seconds per load

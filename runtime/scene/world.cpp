@@ -332,6 +332,7 @@ void loam_world::set_gravity(const float gravity[3]) {
 void loam_world::set_accuracy(const loam_accuracy_def &def) {
   check_accuracy(def);
   if (def.mode == LOAM_ACCURACY_BUDGET && accuracy_.mode != LOAM_ACCURACY_BUDGET) budget_.reset();
+  if (def.budget != accuracy_.budget) budget_.forgive();
   accuracy_ = def;
 }
 

@@ -18,7 +18,7 @@ namespace {
 struct Options {
   double milliseconds = 8;
   int frames = 240;
-  int particles = 4000; // twice as many in the end
+  int particles = 2000; // twice as many in the end
   std::uint32_t threads = 1;
 };
 

@@ -75,7 +75,8 @@ TEST(Budget, IsMetOnAverageThoughTheLoadDoubles) {
       EXPECT_FALSE(choice.exceeds_budget);
       if (step > 3 && step != 100) {
         EXPECT_EQ(choice.reason, std::uint32_t(LOAM_SUBSTEPS_BUDGET)) << load << " " << step;
-        EXPECT_GE(choice.iterations, 5u) << load << " " << step;
+        EXPECT_GE(choice.iterations, 3u) << load << " " << step;
+        EXPECT_LE(choice.iterations, 9u) << load << " " << step;
       }
     }
     EXPECT_NEAR(sums[0], 0.008, 0.0004) << load;
@@ -100,6 +101,7 @@ TEST(Budget, BelowWhatStabilityNeedsItTellsTheLeast) {
   }
   EXPECT_TRUE(choice.exceeds_budget);
   EXPECT_NEAR(choice.least_budget, 1e-5 * 5 * (150 + 2 * 40) * 1e0, 0.0015); // 11.5 ms
+  control.forgive();
   def.budget = 0.02f; // pays for more iterations, but not for more substeps of five
   choice = control.choose(def, needs(3, 30), machine.load);
   EXPECT_FALSE(choice.exceeds_budget);
