@@ -9,27 +9,13 @@ namespace {
 
 using streams::disc;
 using streams::EmptyWorld;
+using streams::instruction_sets;
 
 loam_emitter_def stream(loam_material_id material) {
   loam_emitter_def def = disc(material, 0.03f);
   def.velocity_jitter = 0.1f;
   def.flow = 0.001f;
   return def;
-}
-
-/* Those that the machine and the library have. */
-std::vector<std::uint32_t> instruction_sets() {
-  std::vector<std::uint32_t> sets;
-  for (std::uint32_t set = LOAM_INSTRUCTION_SET_PORTABLE; set <= LOAM_INSTRUCTION_SET_AVX512; ++set) {
-    loam_world_def def;
-    scenes::require(loam_world_def_default(&def, sizeof def), "default");
-    def.backend = LOAM_BACKEND_CPU;
-    def.instruction_set = set;
-    loam_world *world = nullptr;
-    if (loam_world_create(&def, &world) == LOAM_OK) sets.push_back(set);
-    (void)loam_world_destroy(world);
-  }
-  return sets;
 }
 
 /* Saved between two layers, and where a layer has just been dropped in part. */

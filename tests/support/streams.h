@@ -19,6 +19,21 @@ inline loam_emitter_def disc(loam_material_id material, float radius) {
   return def;
 }
 
+/* Instruction sets that the machine and the library have. */
+inline std::vector<std::uint32_t> instruction_sets() {
+  std::vector<std::uint32_t> sets;
+  for (std::uint32_t set = LOAM_INSTRUCTION_SET_PORTABLE; set <= LOAM_INSTRUCTION_SET_AVX512; ++set) {
+    loam_world_def def;
+    scenes::require(loam_world_def_default(&def, sizeof def), "default");
+    def.backend = LOAM_BACKEND_CPU;
+    def.instruction_set = set;
+    loam_world *world = nullptr;
+    if (loam_world_create(&def, &world) == LOAM_OK) sets.push_back(set);
+    (void)loam_world_destroy(world);
+  }
+  return sets;
+}
+
 /* A world of sand without anything in it. */
 struct EmptyWorld {
   explicit EmptyWorld(std::uint64_t capacity, std::uint32_t threads = 1, std::uint32_t solver = LOAM_SOLVER_GAUSS_SEIDEL,
