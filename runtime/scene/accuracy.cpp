@@ -67,8 +67,10 @@ loam_accuracy_def accuracy_preset(std::uint32_t preset) {
   case LOAM_ACCURACY_PRESET_BALANCED:
     break;
   case LOAM_ACCURACY_PRESET_ACCURATE:
-    def.courant = 1;
-    def.most_substeps = 1024;
+    // Short substeps bring more than iterations, see docs/accuracy.html.
+    def.iterations = 3;
+    def.courant = 0.5f;
+    def.most_substeps = 2048;
     break;
   default:
     def.mode = LOAM_ACCURACY_TOLERANCE;
