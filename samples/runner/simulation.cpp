@@ -69,7 +69,10 @@ Simulation::Simulation(Scene &scene) : scene_(&scene) {
       throw Error(fmt::format("{}: more particles than a world can hold", scene.path.string()));
     capacity *= 4;
   }
-  if (particle_count_ + stream_count_ == 0 && !scene.emitters.empty())
+  // A stream may begin later than a run ends.
+  const bool any_stream = std::any_of(scene.emitters.begin(), scene.emitters.end(),
+                                      [](const SceneEmitter &emitter) { return emitter.stream.has_value(); });
+  if (particle_count_ == 0 && !any_stream && !scene.emitters.empty())
     throw Error(fmt::format("{}: the emitters make no particles", scene.path.string()));
   const std::uint64_t needed = std::max<std::uint64_t>(1, particle_count_ + stream_count_);
   if (!build(scene.particle_capacity != 0 ? scene.particle_capacity : needed)) {
