@@ -5,14 +5,13 @@
 #include <numeric>
 
 #include "scene/checks.h"
+#include "solver/cloth_backend.h"
 
 namespace loam {
 namespace {
 
 constexpr std::uint32_t most_triangles = 1u << 24;
 constexpr double greatest_coordinate = 1e4; // m: areas and their inverses stay within float
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 void check_arrays(const loam_mesh &mesh) {
   check_pointer(mesh.positions, "mesh.positions");
@@ -31,7 +30,7 @@ void check_arrays(const loam_mesh &mesh) {
                          mesh.vertex_count));
 }
 
-void check_vertices(const ClothMesh &mesh) {
+void check_cloth_vertices(const ClothMesh &mesh) {
   std::vector<bool> used(mesh.vertices.size());
   for (const int i : mesh.triangles) used[at(i)] = true;
   if (const auto unused = std::find(used.begin(), used.end(), false); unused != used.end())
@@ -123,7 +122,7 @@ ClothMesh make_cloth_mesh(const loam_mesh &mesh) {
     result.vertices.push_back({x[0], x[1], x[2]});
   }
   result.triangles.assign(mesh.indices, mesh.indices + 3 * std::size_t(mesh.triangle_count));
-  check_vertices(result);
+  check_cloth_vertices(result);
   measure_areas(result);
   find_edges(result);
   return result;

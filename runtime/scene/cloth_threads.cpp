@@ -11,8 +11,6 @@ namespace {
 
 using Vector = Vec3<double>;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 class ThreadFinder {
 public:
   ThreadFinder(const ClothMesh &mesh, const Vector &warp)

@@ -15,7 +15,7 @@ float half_extent(float centre, float lower, float upper) {
   return std::nextafter(float(half), infinity);
 }
 
-struct Box {
+struct Bounds {
   Vec3<float> lower, upper;
 };
 
@@ -46,7 +46,7 @@ public:
       Child children[BvhNode::width];
       const int count = collect(open.binary, children);
       for (int k = 0; k < BvhNode::width; ++k) {
-        const Box box = k < count ? children[k].box : Box{};
+        const Bounds box = k < count ? children[k].box : Bounds{};
         BvhNode &node = hierarchy_.nodes[own];
         const float lower[3] = {box.lower.x, box.lower.y, box.lower.z}, upper[3] = {box.upper.x, box.upper.y, box.upper.z};
         for (int axis = 0; axis < 3; ++axis) {
@@ -69,7 +69,7 @@ public:
 private:
   struct Child {
     std::uint32_t entry;
-    Box box;
+    Bounds box;
   };
 
   std::uint32_t first_of(std::uint32_t entry) const {
@@ -82,7 +82,7 @@ private:
     return {node.child[side], {node.lower[side], node.upper[side]}};
   }
 
-  static Box both(const Box &a, const Box &b) {
+  static Bounds both(const Bounds &a, const Bounds &b) {
     return {{std::min(a.lower.x, b.lower.x), std::min(a.lower.y, b.lower.y), std::min(a.lower.z, b.lower.z)},
             {std::max(a.upper.x, b.upper.x), std::max(a.upper.y, b.upper.y), std::max(a.upper.z, b.upper.z)}};
   }

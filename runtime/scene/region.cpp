@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,7 @@
 namespace loam {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 constexpr float max_length = 1e12f; // a million of the largest kernel radii
 
 void check_finite(float value, const char *field, const char *name) {

@@ -5,6 +5,7 @@
 #include <new>
 #include <unordered_map>
 
+#include "scene/checks.h"
 #include "scene/error.h"
 #include "scene/random.h"
 
@@ -230,11 +231,6 @@ bool is_empty(const RegionSampler &region) {
   return !(a.x < b.x && a.y < b.y && a.z < b.z);
 }
 
-void check_range(double value, double low, double high, const char *name) {
-  if (value >= low && value <= high) return;
-  throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("%s is %g, must be %g to %g", name, value, low, high));
-}
-
 void check_definition(const loam_fill_def &def, double r) {
   if (def.sampling > LOAM_SAMPLING_LATTICE) {
     throw Error(LOAM_ERROR_INVALID_ARGUMENT,
@@ -246,9 +242,9 @@ void check_definition(const loam_fill_def &def, double r) {
                 format("spacing is %g, must be 0 (for the default) or %g (half the kernel radius) to %g",
                        double(def.spacing), least, most));
   }
-  check_range(def.jitter, 0, 0.5, "jitter");
-  check_range(def.inset, 0, most, "inset");
-  for (int i = 0; i < 3; ++i) check_range(def.velocity[i], -1e6, 1e6, format("velocity[%d]", i).c_str());
+  check_range("jitter", def.jitter, 0, 0.5);
+  check_range("inset", def.inset, 0, most);
+  for (int i = 0; i < 3; ++i) check_range(format("velocity[%d]", i).c_str(), def.velocity[i], -1e6, 1e6);
   if (def.reserved != 0) throw Error(LOAM_ERROR_INVALID_ARGUMENT, format("reserved is %u, must be 0", def.reserved));
 }
 

@@ -20,9 +20,9 @@ std::uint64_t mix(std::uint64_t lane, std::uint64_t word) {
   return lane << 29 | lane >> 35;
 }
 
-[[noreturn]] void invalid(const std::string &text) { throw Error(LOAM_ERROR_INVALID_SNAPSHOT, "the snapshot " + text); }
-
 } // namespace
+
+void invalid_snapshot(const std::string &text) { throw Error(LOAM_ERROR_INVALID_SNAPSHOT, "the snapshot " + text); }
 
 std::uint64_t snapshot_checksum(const std::byte *memory, std::uint64_t bytes) {
   std::byte header[sizeof(SnapshotHeader)] = {};
@@ -112,23 +112,24 @@ void SnapshotWriter::finish(SnapshotHeader header) {
 
 SnapshotReader::SnapshotReader(const std::byte *memory, std::uint64_t bytes) {
   if (bytes < sizeof header_)
-    invalid(format("has %llu bytes, fewer than its header", static_cast<unsigned long long>(bytes)));
+    invalid_snapshot(format("has %llu bytes, fewer than its header", static_cast<unsigned long long>(bytes)));
   std::memcpy(&header_, memory, sizeof header_);
-  if (std::memcmp(header_.magic, "LOAMSNAP", 8) != 0) invalid("does not begin with LOAMSNAP");
-  if (header_.byte_order != 0x01020304u) invalid("is damaged: its byte order is none");
+  if (std::memcmp(header_.magic, "LOAMSNAP", 8) != 0) invalid_snapshot("does not begin with LOAMSNAP");
+  if (header_.byte_order != 0x01020304u) invalid_snapshot("is damaged: its byte order is none");
   if (header_.version != LOAM_SNAPSHOT_VERSION)
-    invalid(format("is of version %u; this library reads version %u", header_.version, unsigned(LOAM_SNAPSHOT_VERSION)));
+    invalid_snapshot(
+        format("is of version %u; this library reads version %u", header_.version, unsigned(LOAM_SNAPSHOT_VERSION)));
   if (header_.bytes != bytes)
-    invalid(format("was saved with %llu bytes, and has %llu", static_cast<unsigned long long>(header_.bytes),
-                   static_cast<unsigned long long>(bytes)));
-  if (header_.checksum != snapshot_checksum(memory, bytes)) invalid("is damaged: its checksum differs");
+    invalid_snapshot(format("was saved with %llu bytes, and has %llu", static_cast<unsigned long long>(header_.bytes),
+                            static_cast<unsigned long long>(bytes)));
+  if (header_.checksum != snapshot_checksum(memory, bytes)) invalid_snapshot("is damaged: its checksum differs");
   // What follows can only be wrong in bytes that were made to fit the checksum.
   const std::byte *fields = memory + sizeof header_, *end = memory + bytes;
-  if (header_.field_bytes > bytes - sizeof header_) invalid("has fields beyond its end");
+  if (header_.field_bytes > bytes - sizeof header_) invalid_snapshot("has fields beyond its end");
   at_ = fields + header_.field_bytes;
   end_ = end;
   for (std::uint32_t s = 0; s < header_.sections; ++s) read_section();
-  if (at_ != end) invalid("has bytes behind its last section");
+  if (at_ != end) invalid_snapshot("has bytes behind its last section");
   at_ = fields;
   end_ = fields + header_.field_bytes;
 }
@@ -139,9 +140,9 @@ void SnapshotReader::read_section() {
   section.object = take<std::uint32_t>();
   section.count = take<std::uint64_t>();
   const auto columns = take<std::uint32_t>();
-  if (section.count > std::uint64_t(1) << 32 || columns > 8) invalid("has a section of impossible size");
+  if (section.count > std::uint64_t(1) << 32 || columns > 8) invalid_snapshot("has a section of impossible size");
   const auto skip = [&](std::uint64_t bytes) {
-    if (bytes > static_cast<std::uint64_t>(end_ - at_)) invalid("has a section beyond its end");
+    if (bytes > static_cast<std::uint64_t>(end_ - at_)) invalid_snapshot("has a section beyond its end");
     const std::byte *from = at_;
     at_ += bytes;
     return from;
@@ -149,16 +150,17 @@ void SnapshotReader::read_section() {
   for (std::uint32_t c = 0; c < columns; ++c) {
     Column column = {};
     column.value_count = take<std::uint32_t>();
-    if (column.value_count > WordTable::most) invalid("has a column of too many values");
+    if (column.value_count > WordTable::most) invalid_snapshot("has a column of too many values");
     column.values = skip(4 * (column.value_count == 0 ? section.count : column.value_count));
     if (column.value_count > 1) {
       column.indices = skip(section.count);
       for (std::uint64_t i = 0; i < section.count; ++i)
-        if (static_cast<std::uint32_t>(column.indices[i]) >= column.value_count) invalid("has an index beyond its values");
+        if (static_cast<std::uint32_t>(column.indices[i]) >= column.value_count)
+          invalid_snapshot("has an index beyond its values");
     }
     section.columns.push_back(column);
   }
-  if (find(section.kind, section.object) != nullptr) invalid("has a section twice");
+  if (find(section.kind, section.object) != nullptr) invalid_snapshot("has a section twice");
   sections_.push_back(std::move(section));
 }
 
@@ -177,13 +179,13 @@ const SnapshotReader::Section *SnapshotReader::find(StateKind kind, std::uint32_
 }
 
 void SnapshotReader::take(void *to, std::size_t bytes) {
-  if (bytes > static_cast<std::size_t>(end_ - at_)) invalid("ends too early");
+  if (bytes > static_cast<std::size_t>(end_ - at_)) invalid_snapshot("ends too early");
   std::memcpy(to, at_, bytes);
   at_ += bytes;
 }
 
 void SnapshotReader::end_fields() const {
-  if (at_ != end_) invalid("has more fields than this version reads");
+  if (at_ != end_) invalid_snapshot("has more fields than this version reads");
 }
 
 } // namespace loam

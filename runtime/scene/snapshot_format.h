@@ -23,6 +23,9 @@ namespace loam {
 
 static_assert(std::endian::native == std::endian::little, "snapshots are little-endian");
 
+// Throws Error INVALID_SNAPSHOT: "the snapshot" and this text.
+[[noreturn]] void invalid_snapshot(const std::string &text);
+
 // Of `bytes` bytes, as if the header's own field for it were 0. A change that stays within 8 bytes always changes it.
 std::uint64_t snapshot_checksum(const std::byte *memory, std::uint64_t bytes);
 

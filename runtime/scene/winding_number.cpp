@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <numbers>
 
 #include "kernels/contact/mesh_query.h"
 #include "scene/error.h"
@@ -15,7 +16,7 @@
 namespace loam {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 constexpr double far_radii = 2.0;
 
 Vec3<double> widened(Vec3<float> v) { return {v.x, v.y, v.z}; }

@@ -117,8 +117,6 @@ template <class At> std::uint32_t used_slots(std::size_t count, At &&at) {
   return static_cast<std::uint32_t>(count);
 }
 
-[[noreturn]] void invalid(const std::string &text) { throw Error(LOAM_ERROR_INVALID_SNAPSHOT, "the snapshot " + text); }
-
 void check_pose(const Pose &pose) {
   const float values[7] = {pose.position.x, pose.position.y, pose.position.z, pose.rotation.x,
                            pose.rotation.y, pose.rotation.z, pose.rotation.w};
@@ -132,7 +130,7 @@ void check_attachments(const std::vector<SolverAttachment> &attachments, std::ui
   std::vector<bool> held(vertices);
   for (const SolverAttachment &a : attachments) {
     if (a.vertex < 0 || static_cast<std::uint32_t>(a.vertex) >= vertices || held[static_cast<std::size_t>(a.vertex)])
-      invalid("attaches a vertex that is not there, or twice");
+      invalid_snapshot("attaches a vertex that is not there, or twice");
     held[static_cast<std::size_t>(a.vertex)] = true;
     const float point[3] = {a.point.x, a.point.y, a.point.z};
     check_vector("point", point, 1e9);
@@ -355,7 +353,7 @@ void loam_world::check(const Moving &moving) const {
   check_accuracy(moving.accuracy);
   const float gravity[3] = {moving.gravity.x, moving.gravity.y, moving.gravity.z};
   check_vector("gravity", gravity, 1e6);
-  if (moving.next_id > 0xffffffffu) invalid("has given out more ids than there are");
+  if (moving.next_id > 0xffffffffu) invalid_snapshot("has given out more ids than there are");
   for (std::size_t i = 0; i < colliders_.size(); ++i)
     if (colliders_.at_index(i) != nullptr) {
       check_pose(moving.colliders[i].pose);
@@ -363,7 +361,8 @@ void loam_world::check(const Moving &moving) const {
     }
   for (std::size_t i = 0; i < cloths_.slot_count(); ++i)
     if (const ClothScene::Description *c = cloths_.description(i); c != nullptr) {
-      if (!cloths_.could_be_torn(backend_->cloth(), i, moving.cloths[i].torn)) invalid("tears a cloth as it cannot be torn");
+      if (!cloths_.could_be_torn(backend_->cloth(), i, moving.cloths[i].torn))
+        invalid_snapshot("tears a cloth as it cannot be torn");
       std::uint32_t vertices = c->vertex_count;
       for (const TornCorner &torn : moving.cloths[i].torn)
         vertices = std::max(vertices, static_cast<std::uint32_t>(torn.vertex) + 1);
@@ -372,7 +371,7 @@ void loam_world::check(const Moving &moving) const {
       for (const SolverAttachment &a : moving.cloths[i].attachments)
         if (a.collider != -1 && (a.collider < 0 || static_cast<std::size_t>(a.collider) >= colliders_.size() ||
                                  colliders_.at_index(static_cast<std::size_t>(a.collider)) == nullptr))
-          invalid("attaches a vertex to a collider that is not there");
+          invalid_snapshot("attaches a vertex to a collider that is not there");
     }
   for (std::size_t i = 0; i < emitters_.slot_count(); ++i)
     if (const Emitter *e = emitters_.at_slot(i); e != nullptr) e->check_state(moving.emitters[i], moving.next_id);
@@ -437,7 +436,7 @@ std::uint64_t loam_world::save(std::byte *memory, std::uint64_t capacity) {
 
 void loam_world::check_state(const SnapshotReader &snapshot, const std::vector<StateSection> &state,
                              std::uint64_t next_id) const {
-  if (snapshot.particles() > def_.particle_capacity) invalid("has more particles than its capacity");
+  if (snapshot.particles() > def_.particle_capacity) invalid_snapshot("has more particles than its capacity");
   const auto own = [&](const SnapshotReader::Section &section) {
     return std::find_if(state.begin(), state.end(),
                         [&](const StateSection &s) { return s.kind == section.kind && s.object == section.object; });
@@ -445,26 +444,27 @@ void loam_world::check_state(const SnapshotReader &snapshot, const std::vector<S
   for (const SnapshotReader::Section &section : snapshot.sections()) {
     const auto mine = own(section);
     if (mine == state.end()) {
-      if (!section.is_zero()) invalid(format("has state of kind %u that the world does not hold", unsigned(section.kind)));
+      if (!section.is_zero())
+        invalid_snapshot(format("has state of kind %u that the world does not hold", unsigned(section.kind)));
     } else if (section.count != mine->count || section.columns.size() != mine->saved) {
-      invalid(format("has state of kind %u of another size than the world's", unsigned(section.kind)));
+      invalid_snapshot(format("has state of kind %u of another size than the world's", unsigned(section.kind)));
     }
   }
   // What the world holds beyond that may be what no material asks for; otherwise it must be there.
   for (const StateKind kind : {StateKind::positions, StateKind::log_volumes, StateKind::rest_volumes, StateKind::velocities,
                                StateKind::strains, StateKind::ids, StateKind::materials})
-    if (snapshot.find(kind, 0) == nullptr) invalid(format("lacks state of kind %u", unsigned(kind)));
+    if (snapshot.find(kind, 0) == nullptr) invalid_snapshot(format("lacks state of kind %u", unsigned(kind)));
   for (const StateSection &section : state)
     if (section.object > 0 || section.kind >= StateKind::cloth_positions)
       if (snapshot.find(section.kind, section.object) == nullptr)
-        invalid(format("lacks state of kind %u", unsigned(section.kind)));
+        invalid_snapshot(format("lacks state of kind %u", unsigned(section.kind)));
 
   for (const StateKind kind : {StateKind::collider_vertices, StateKind::collider_targets})
     for (const StateSection &section : state)
       if (section.kind == kind)
         for (const SnapshotReader::Column &axis : snapshot.find(kind, section.object)->columns)
           for (std::uint64_t i = 0; i < section.count; ++i)
-            if (!(std::abs(float_of(axis.at(i))) <= 1e8f)) invalid("has a collider with a vertex that is nowhere");
+            if (!(std::abs(float_of(axis.at(i))) <= 1e8f)) invalid_snapshot("has a collider with a vertex that is nowhere");
 
   const auto column = [&](StateKind kind, std::size_t c) { return snapshot.find(kind, 0)->columns[c]; };
   const SnapshotReader::Column materials = column(StateKind::materials, 0), ids = column(StateKind::ids, 0),
@@ -472,11 +472,11 @@ void loam_world::check_state(const SnapshotReader &snapshot, const std::vector<S
   for (std::uint64_t i = 0; i < snapshot.particles(); ++i) {
     const std::uint32_t material = materials.at(i);
     if (material >= materials_.size() || materials_.at_index(material) == nullptr)
-      invalid("has a particle of a material that is not there");
-    if (ids.at(i) >= next_id) invalid("has a particle with an id that was never given out");
+      invalid_snapshot("has a particle of a material that is not there");
+    if (ids.at(i) >= next_id) invalid_snapshot("has a particle with an id that was never given out");
     const float volume = float_of(volumes.at(i)), inverse_mass = float_of(masses.at(i));
-    if (!(volume > 0.0f && std::isfinite(volume))) invalid("has a particle without a volume");
-    if (!(inverse_mass >= 0.0f && std::isfinite(inverse_mass))) invalid("has a particle without a mass");
+    if (!(volume > 0.0f && std::isfinite(volume))) invalid_snapshot("has a particle without a volume");
+    if (!(inverse_mass >= 0.0f && std::isfinite(inverse_mass))) invalid_snapshot("has a particle without a mass");
   }
 }
 
@@ -492,7 +492,7 @@ void loam_world::restore(const std::byte *memory, std::uint64_t bytes) {
     check(moving);
   } catch (const Error &error) {
     if (error.status() != LOAM_ERROR_INVALID_ARGUMENT) throw;
-    invalid(std::string("is damaged: ") + error.what());
+    invalid_snapshot(std::string("is damaged: ") + error.what());
   }
   const std::uint64_t particles = snapshot.particles();
   std::vector<StateSection> state = backend_->state(std::min<std::uint64_t>(particles, def_.particle_capacity));

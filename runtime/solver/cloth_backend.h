@@ -1,6 +1,7 @@
 // What the scene says to the solver about cloth. Part of the interface in backend.h.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -10,6 +11,9 @@
 #include "solver/state_section.h"
 
 namespace loam {
+
+// A vertex, an edge or a triangle as an index.
+inline std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // Constraints of one kind, colour by colour.
 struct ClothConstraintList {

@@ -4,11 +4,6 @@
 #include <numeric>
 
 namespace loam {
-namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-} // namespace
 
 ClothTopology::ClothTopology(const SolverCloth &whole)
     : whole_(whole), corners_(whole.triangles), origins_(whole.positions.size()),

@@ -63,9 +63,9 @@ std::uint64_t hash_of(std::uint32_t threads, std::uint32_t set) {
 }
 
 TEST(DeformingMesh, HasTheSameBitsForAnyNumberOfThreadsAndInstructionSet) {
-  const std::uint64_t expected = hash_of(1, LOAM_INSTRUCTION_SET_AUTO);
-  for (const std::uint32_t threads : {2u, 5u}) EXPECT_EQ(hash_of(threads, LOAM_INSTRUCTION_SET_AUTO), expected);
-  if (hooks::short_run()) return;
+  const std::uint64_t expected = hash_of(5, LOAM_INSTRUCTION_SET_AUTO);
+  if (hooks::only_races) return;
+  for (const std::uint32_t threads : {1u, 2u}) EXPECT_EQ(hash_of(threads, LOAM_INSTRUCTION_SET_AUTO), expected);
   for (std::uint32_t set = LOAM_INSTRUCTION_SET_PORTABLE; set <= LOAM_INSTRUCTION_SET_AVX512; ++set)
     if (has(set)) {
       EXPECT_EQ(hash_of(1, set), expected) << set;

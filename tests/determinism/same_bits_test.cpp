@@ -40,7 +40,10 @@ TEST_P(SameBits, ForAnyNumberOfThreads) {
   for (const std::uint32_t threads : {2u, 5u}) {
     loam_world_def def = definition();
     def.thread_count = threads;
-    EXPECT_EQ(scene_.hash_after(def, frames()), expected()) << threads;
+    const std::uint64_t hash = scene_.hash_after(def, frames());
+    if (!hooks::only_races) {
+      EXPECT_EQ(hash, expected()) << threads;
+    }
   }
 }
 
@@ -66,11 +69,12 @@ TEST_P(SameBits, OnSixteenThreadsOfTheHost) {
   // Far more threads than a small machine has processors: fewer frames, in every order that they preempt each other.
   hooks::ThreadJobs jobs;
   loam_world_def def = definition();
-  const std::uint64_t alone = scene_.hash_after(def, 5);
+  const int frames = hooks::only_races ? 2 : 5;
+  const std::uint64_t alone = scene_.hash_after(def, frames);
   def.thread_count = 16;
   def.job_system = jobs.hooks();
-  for (int round = 0; round < 2; ++round) EXPECT_EQ(scene_.hash_after(def, 5), alone);
-  EXPECT_GE(jobs.enqueued, 150u);
+  for (int round = 0; round < 2; ++round) EXPECT_EQ(scene_.hash_after(def, frames), alone);
+  EXPECT_GE(jobs.enqueued, std::uint64_t(30 * frames));
 }
 
 TEST_P(SameBits, ForEveryInstructionSetOfTheMachine) {
@@ -111,14 +115,14 @@ TEST(SameBitsOfEveryLaw, ForAnyNumberOfThreadsAndInstructionSet) {
       if (m > 0) share.planes.clear();
       world.add(share);
     }
-    for (int frame = 0; frame < (hooks::short_run() ? 3 : 10); ++frame) world.step(2e-3f);
+    for (int frame = 0; frame < (hooks::only_races ? 1 : 10); ++frame) world.step(2e-3f);
     EXPECT_EQ(world.statistics().non_finite, 0u);
     return world.state_hash();
   };
   for (const std::uint32_t solver : {LOAM_SOLVER_GAUSS_SEIDEL, LOAM_SOLVER_JACOBI}) {
-    const std::uint64_t expected = hash(solver, 1, LOAM_INSTRUCTION_SET_AUTO);
-    EXPECT_EQ(hash(solver, 3, LOAM_INSTRUCTION_SET_AUTO), expected);
-    if (hooks::short_run()) continue; // with a sanitizer: other instruction sets do the same with threads
+    const std::uint64_t expected = hash(solver, 3, LOAM_INSTRUCTION_SET_AUTO);
+    if (hooks::only_races) continue;
+    EXPECT_EQ(hash(solver, 1, LOAM_INSTRUCTION_SET_AUTO), expected);
     for (std::uint32_t set = LOAM_INSTRUCTION_SET_PORTABLE; set <= LOAM_INSTRUCTION_SET_AVX512; ++set)
       if (has(set)) {
         EXPECT_EQ(hash(solver, 1, set), expected) << set;
@@ -140,7 +144,7 @@ TEST(SameBitsOfSleep, ForAnyNumberOfThreadsAndInstructionSet) {
       def.solver = solver;
       def.thread_count = threads;
       def.instruction_set = set;
-      def.substeps = 8;
+      def.substeps = hooks::only_races ? 4 : 8;
       def.sleep_speed = 0.02f;
       def.sleep_delay = 0.05f;
       scenes::World world(def, layer);
@@ -156,9 +160,9 @@ TEST(SameBitsOfSleep, ForAnyNumberOfThreadsAndInstructionSet) {
       EXPECT_TRUE(woken);
       return world.state_hash();
     };
-    const std::uint64_t expected = hash(1, LOAM_INSTRUCTION_SET_AUTO);
-    EXPECT_EQ(hash(3, LOAM_INSTRUCTION_SET_AUTO), expected);
-    if (hooks::short_run()) continue;
+    const std::uint64_t expected = hash(hooks::only_races ? 2 : 3, LOAM_INSTRUCTION_SET_AUTO);
+    if (hooks::only_races) continue;
+    EXPECT_EQ(hash(1, LOAM_INSTRUCTION_SET_AUTO), expected);
     for (std::uint32_t set = LOAM_INSTRUCTION_SET_PORTABLE; set <= LOAM_INSTRUCTION_SET_AVX512; ++set)
       if (has(set)) {
         EXPECT_EQ(hash(2, set), expected) << set;

@@ -15,6 +15,13 @@ namespace loam::hooks {
 /* Sanitizers make the scenes ten times slower; the presets that build with them set this. */
 inline bool short_run() { return std::getenv("LOAM_TEST_SHORT") != nullptr; }
 
+/* With the thread sanitizer, races are looked for and not bits: a run on one thread for comparison has none, and only costs time. */
+#ifdef __SANITIZE_THREAD__
+constexpr bool only_races = true;
+#else
+constexpr bool only_races = false;
+#endif
+
 class Allocator {
 public:
   loam_allocator hooks() { return {this, &allocate, &release}; }

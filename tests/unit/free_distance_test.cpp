@@ -33,7 +33,7 @@ public:
     backend_ = make_cpu_backend(settings, execution);
     backend_->set_materials({{make_law(scenes::sand(35, 2e5f)), "sand", true}});
     input_.seconds = 1.0f / 60;
-    input_.substeps = hooks::short_run() ? 3 : 8;
+    input_.substeps = hooks::only_races ? 1 : hooks::short_run() ? 3 : 8;
     input_.iterations = 2;
     input_.gravity = {0, -9.81f, 0};
     add_block({0, 0, 0});
@@ -75,7 +75,8 @@ private:
   void add_block(Vec3<float> centre) {
     std::vector<float> positions;
     const float spacing = 0.6f * radius;
-    for (int i = 0; i < 1000; ++i)
+    const int count = hooks::only_races ? 300 : 1000;
+    for (int i = 0; i < count; ++i)
       positions.insert(positions.end(),
                        {centre.x + spacing * (float(i % 10) - 4.5f), centre.y + spacing * (float(i / 10 % 10) - 4.5f),
                         centre.z + spacing * (float(i / 100) - 4.5f)});
@@ -84,7 +85,7 @@ private:
     particles.inverse_mass = 1 / (1600 * particles.volume);
     particles.first_id = std::uint32_t(backend_->particle_count());
     particles.positions = positions.data();
-    particles.count = 1000;
+    particles.count = std::uint32_t(count);
     backend_->add_particles(particles);
   }
   int add_mesh(const MeshData &data, const Pose &pose, bool deforms = false) {
@@ -103,11 +104,12 @@ private:
 };
 
 TEST(FreeDistances, LeaveNoTraceInTheState) {
-  const std::uint64_t expected = Scene(false, 1).run();
+  const std::uint64_t expected = Scene(true, hooks::only_races ? 2 : 3).run();
+  if (hooks::only_races) return;
+  EXPECT_EQ(Scene(false, 1).run(), expected);
   if (!hooks::short_run()) {
     EXPECT_EQ(Scene(true, 1).run(), expected);
   }
-  EXPECT_EQ(Scene(true, 3).run(), expected);
 }
 
 ColliderView view_between(const Pose &start, const Pose &end) {
