@@ -20,7 +20,7 @@ run_target() {
   local new=build/fuzz/corpus/$1 dictionary=()
   if [[ -f tests/fuzz/$1.dict ]]; then dictionary=("-dict=tests/fuzz/$1.dict"); fi
   mkdir -p "$new" build/fuzz/findings
-  "build/fuzz/tests/fuzz/fuzz_$1" -max_total_time="$seconds" -max_len=8192 -timeout=20 -rss_limit_mb=2048 -print_final_stats=1 \
+  "build/fuzz/tests/fuzz/fuzz_$1" -max_total_time="$seconds" -max_len=8192 -timeout=60 -rss_limit_mb=2048 -print_final_stats=1 \
     "${dictionary[@]}" -artifact_prefix="build/fuzz/findings/$1-" "$new" "tests/fuzz/corpus/$1"
 }
 
