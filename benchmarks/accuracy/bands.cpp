@@ -65,7 +65,7 @@ constexpr Ratio ratios[] = {
 };
 
 bool is_of(const Row &row, const char *effect, const char *name, const Setting &setting) {
-  return row.effect == effect && row.name == name && row.solver == setting.form.solver_name() &&
+  return row.effect == effect && row.name == name && row.preset.empty() && row.solver == setting.form.solver_name() &&
          row.multiplier == setting.form.multiplier_name() && std::fabs(row.substep / setting.substep - 1) < 1e-6 &&
          row.iterations == setting.iterations;
 }

@@ -20,8 +20,6 @@ double measured_drop(Cantilever beam, const Setting &setting, Meter &meter) {
   return beam.run(meter.course()).drop;
 }
 
-void append(std::vector<Setting> &to, const std::vector<Setting> &more) { to.insert(to.end(), more.begin(), more.end()); }
-
 /* The softer the beam, the slower it is. Settings with which it falls off its clamp are of no interest, nor are those that converge far beyond what is asked. */
 std::vector<Setting> settings(const Beam &beam, bool quick) {
   if (quick) {
@@ -39,6 +37,7 @@ std::vector<Setting> settings(const Beam &beam, bool quick) {
   append(all, combine(forms, {5e-4}, {1, 2, 3, 5, 10}));
   append(all, combine(forms, {1e-3}, {1, 2, 3, 5, 10, 20}));
   append(all, combine(forms, {2e-3, 5e-3}, {5, 10, 20, 50}));
+  if (modulus < 5e5) append(all, presets(1 / 60.0));
   return all;
 }
 

@@ -12,6 +12,7 @@ void cloth(Study &study) {
     for (const std::uint32_t iterations :
          study.quick() ? std::vector<std::uint32_t>{5, 20} : std::vector<std::uint32_t>{1, 2, 5, 10, 20, 50})
       settings.push_back({{}, 1 / (60 * substeps), iterations});
+  if (!study.quick()) append(settings, presets(1 / 60.0));
   const auto accuracy = [](const Setting &setting) {
     return test::Accuracy{setting.iterations, std::uint32_t(std::lround(1 / (60 * setting.substep)))};
   };

@@ -9,10 +9,12 @@ void dam(Study &study) {
   const std::vector<double> substeps = study.quick() ? std::vector{1e-3, 2e-3} : std::vector{5e-4, 1e-3, 2e-3, 4e-3};
   const std::vector<std::uint32_t> iterations =
       study.quick() ? std::vector<std::uint32_t>{5} : std::vector<std::uint32_t>{1, 2, 5, 10, 20};
-  // The density's constraints have no tensors.
+  std::vector<Setting> settings =
+      combine({{}, {LOAM_SOLVER_JACOBI}}, substeps, iterations); // the density's constraints have no tensors
+  if (!study.quick()) append(settings, presets(frame));
   study.sweep(
-      "dam", "n^2 = 2", {"front over Martin and Moyce", "front over Koshizuka and Oka"},
-      combine({{}, {LOAM_SOLVER_JACOBI}}, substeps, iterations), [&](const Setting &setting, Meter &meter) {
+      "dam", "n^2 = 2", {"front over Martin and Moyce", "front over Koshizuka and Oka"}, settings,
+      [&](const Setting &setting, Meter &meter) {
         test::Course course = meter.course();
         course.change = [&](loam_world_def &def) {
           setting.apply(def);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <vector>
 
@@ -20,11 +21,14 @@ public:
     test::Course course;
     course.change = [this](loam_world_def &def) { setting_.apply(def); };
     course.step = [this](scenes::World &world, float seconds) {
+      if (setting_.preset >= 0 && costs_.empty()) use_preset(world);
       const std::clock_t begin = std::clock();
       world.step(seconds);
       costs_.push_back(double(std::clock() - begin) / CLOCKS_PER_SEC / double(seconds));
       const loam_statistics statistics = world.statistics();
       residuals_.push_back(statistics.residual);
+      substeps_.push_back(double(seconds) / statistics.substeps);
+      iterations_.push_back(statistics.iterations);
       if (statistics.particles > 0) particles_ = std::size_t(statistics.particles);
     };
     return course;
@@ -32,10 +36,17 @@ public:
 
   double seconds_per_second() const { return median(costs_); } // of the processor, for a second of the simulation
   double residual() const { return median(residuals_); }
+  double substep() const { return median(substeps_); }                                         // seconds
+  std::uint32_t iterations() const { return std::uint32_t(std::lround(median(iterations_))); } // of a substep
   std::size_t particles() const { return particles_; }
   void count_vertices(std::size_t vertices) { particles_ = vertices; } // of cloth, in place of particles
 
 private:
+  void use_preset(scenes::World &world) const {
+    loam_accuracy_def def;
+    scenes::require(loam_accuracy_def_preset(std::uint32_t(setting_.preset), &def, sizeof def), "loam_accuracy_def_preset");
+    scenes::require(loam_world_use_accuracy(world.get(), &def), "loam_world_use_accuracy");
+  }
   static double median(std::vector<double> values) {
     if (values.empty()) return 0;
     const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
@@ -44,7 +55,7 @@ private:
   }
 
   Setting setting_;
-  std::vector<double> costs_, residuals_;
+  std::vector<double> costs_, residuals_, substeps_, iterations_;
   std::size_t particles_ = 0;
 };
 

@@ -8,6 +8,8 @@ namespace loam::accuracy {
 
 namespace {
 
+constexpr double frame = 0.004;
+
 /* A surface of the ground, on whose one side the sand stays. */
 struct Side {
   double normal[2]; // across it, in the plane of x and y; it goes through the origin
@@ -28,7 +30,7 @@ meshes::Mesh groove() {
 }
 
 double deepest(bool into_groove, const Setting &setting, Meter &meter) {
-  constexpr double frame = 0.004, seconds = 0.2, root = 0.70710678118654752;
+  constexpr double seconds = 0.2, root = 0.70710678118654752;
   scenes::Scene scene = scenes::drop_block(scenes::sand(), 10, into_groove ? 0.06f : 0.01f, 2);
   if (into_groove) scene.planes.clear();
   test::Course course = meter.course();
@@ -64,9 +66,11 @@ void penetration(Study &study) {
   const std::vector<double> substeps = study.quick() ? std::vector{1e-3, 4e-3} : std::vector{5e-4, 1e-3, 2e-3, 4e-3};
   const std::vector<std::uint32_t> iterations =
       study.quick() ? std::vector<std::uint32_t>{5} : std::vector<std::uint32_t>{1, 5, 10};
+  std::vector<Setting> settings = combine({{}, {LOAM_SOLVER_JACOBI}}, substeps, iterations);
+  if (!study.quick()) append(settings, presets(frame));
   for (const bool into_groove : {false, true})
     study.sweep("penetration", into_groove ? "into a groove" : "onto a plane", {"depth over the radius of a grain"},
-                combine({{}, {LOAM_SOLVER_JACOBI}}, substeps, iterations),
+                settings,
                 [&](const Setting &setting, Meter &meter) { return std::vector{deepest(into_groove, setting, meter)}; });
 }
 

@@ -82,9 +82,10 @@ void sand(Study &study) {
                 });
 
   const Form gauss_seidel = {}, scalar = {LOAM_SOLVER_GAUSS_SEIDEL, LOAM_MULTIPLIER_SCALAR}, jacobi = {LOAM_SOLVER_JACOBI};
-  const std::vector<Setting> settings =
-      study.quick() ? combine({gauss_seidel}, {1e-3, 2e-3}, {2, 5})
-                    : combine({gauss_seidel, scalar, jacobi}, {5e-4, 1e-3, 2e-3, 4e-3}, {1, 2, 5, 10});
+  std::vector<Setting> settings = study.quick()
+                                      ? combine({gauss_seidel}, {1e-3, 2e-3}, {2, 5})
+                                      : combine({gauss_seidel, scalar, jacobi}, {5e-4, 1e-3, 2e-3, 4e-3}, {1, 2, 5, 10});
+  if (!study.quick()) append(settings, presets(0.02));
   study.sweep(
       "sand", "slab", {"run-out over the experiment", "run-out over material points", "run-out over the finest setting"},
       settings, [&](const Setting &setting, Meter &meter) {

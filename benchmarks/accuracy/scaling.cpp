@@ -40,7 +40,7 @@ void scaling(Study &study) {
   for (const Form &form : {Form{}, Form{LOAM_SOLVER_JACOBI}})
     for (std::size_t particles = 4096; particles <= most; particles *= 2) {
       const Block block(scenes::sand(), particles, form);
-      study.add({"scaling", "sand", form.solver_name(), form.multiplier_name(), substep, 5, particles,
+      study.add({"scaling", "sand", "", form.solver_name(), form.multiplier_name(), substep, 5, particles,
                  "seconds a particle and substep", block.meter().seconds_per_second() * substep / double(particles),
                  block.meter().seconds_per_second(), 0});
     }
@@ -55,7 +55,7 @@ void scaling(Study &study) {
     double whole = 0;
     for (const loam_stage &stage : block.stages()) whole += stage.seconds;
     for (const loam_stage &stage : block.stages())
-      study.add({std::string("stages of ") + name, stage.name, "gauss_seidel", "tensor", substep, 5, particles,
+      study.add({std::string("stages of ") + name, stage.name, "", "gauss_seidel", "tensor", substep, 5, particles,
                  "share of the step", stage.seconds / whole, stage.seconds / (substeps * substep), 0});
   }
 }

@@ -21,10 +21,13 @@ inline constexpr Form all_forms[] = {{LOAM_SOLVER_GAUSS_SEIDEL, LOAM_MULTIPLIER_
                                      {LOAM_SOLVER_JACOBI, LOAM_MULTIPLIER_PROJECTED_TENSOR},
                                      {LOAM_SOLVER_JACOBI, LOAM_MULTIPLIER_SCALAR}};
 
+inline constexpr const char *preset_names[] = {"fast", "balanced", "accurate", "reference"}; // LOAM_ACCURACY_PRESET_FAST ...
+
 struct Setting {
   Form form;
-  double substep = 1e-3; // seconds
+  double substep = 1e-3; // seconds; of a preset the whole frame, for the library cuts it
   std::uint32_t iterations = 5;
+  int preset = -1; // of the library, or none
 
   /* On one thread, so that times are steady. The substep is the experiment's to set. */
   void apply(loam_world_def &def) const {

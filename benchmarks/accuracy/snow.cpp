@@ -19,8 +19,10 @@ void snow(Study &study) {
       study.quick() ? std::vector{2.5e-4, 1e-3} : std::vector{1e-4, 2.5e-4, 5e-4, 1e-3, 2.5e-3};
   const std::vector<std::uint32_t> iterations =
       study.quick() ? std::vector<std::uint32_t>{5} : std::vector<std::uint32_t>{1, 2, 5, 10};
-  sweep("plasticity within the iterations", LOAM_PLASTICITY_IMPLICIT,
-        combine({{}, {LOAM_SOLVER_GAUSS_SEIDEL, LOAM_MULTIPLIER_SCALAR}, {LOAM_SOLVER_JACOBI}}, substeps, iterations));
+  std::vector<Setting> settings =
+      combine({{}, {LOAM_SOLVER_GAUSS_SEIDEL, LOAM_MULTIPLIER_SCALAR}, {LOAM_SOLVER_JACOBI}}, substeps, iterations);
+  if (!study.quick()) append(settings, presets(0.005));
+  sweep("plasticity within the iterations", LOAM_PLASTICITY_IMPLICIT, settings);
   sweep("plasticity after the substep", LOAM_PLASTICITY_SEMI_IMPLICIT, combine({{}}, substeps, {5}));
 }
 

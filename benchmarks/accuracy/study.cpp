@@ -27,21 +27,33 @@ void Study::sweep(const std::string &effect, const std::string &name, const std:
       errors.assign(error_names.size(), std::numeric_limits<double>::infinity());
     }
     for (std::size_t k = 0; k < errors.size(); ++k)
-      add({effect, name, setting.form.solver_name(), setting.form.multiplier_name(), setting.substep, setting.iterations,
-           meter.particles(), error_names[k], errors[k], meter.seconds_per_second(), meter.residual()});
+      add({effect, name, setting.preset >= 0 ? preset_names[setting.preset] : "", setting.form.solver_name(),
+           setting.form.multiplier_name(), setting.preset >= 0 ? meter.substep() : setting.substep,
+           setting.preset >= 0 ? meter.iterations() : setting.iterations, meter.particles(), error_names[k], errors[k],
+           meter.seconds_per_second(), meter.residual()});
   }
 }
 
 void Study::write(const std::string &path) const {
   std::ofstream file(path);
   file.precision(6);
-  file << "effect,case,solver,multiplier,substep_s,iterations,particles,error_name,error,seconds_per_second,residual\n";
+  file << "effect,case,preset,solver,multiplier,substep_s,iterations,particles,error_name,error,seconds_per_second,"
+          "residual\n";
   for (const Row &row : rows_)
-    file << row.effect << ',' << row.name << ',' << row.solver << ',' << row.multiplier << ',' << row.substep << ','
-         << row.iterations << ',' << row.particles << ',' << row.error_name << ',' << row.error << ','
+    file << row.effect << ',' << row.name << ',' << row.preset << ',' << row.solver << ',' << row.multiplier << ','
+         << row.substep << ',' << row.iterations << ',' << row.particles << ',' << row.error_name << ',' << row.error << ','
          << row.seconds_per_second << ',' << row.residual << '\n';
   file.close();
   if (!file) throw std::runtime_error("cannot write " + path);
+}
+
+void append(std::vector<Setting> &to, const std::vector<Setting> &more) { to.insert(to.end(), more.begin(), more.end()); }
+
+std::vector<Setting> presets(double frame) {
+  std::vector<Setting> settings;
+  for (int preset = LOAM_ACCURACY_PRESET_FAST; preset <= LOAM_ACCURACY_PRESET_REFERENCE; ++preset)
+    settings.push_back({{}, frame, 1, preset});
+  return settings;
 }
 
 std::vector<Setting> combine(const std::vector<Form> &forms, const std::vector<double> &substeps,

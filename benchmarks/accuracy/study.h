@@ -12,6 +12,7 @@ namespace loam::accuracy {
 /* One setting of one experiment and one measure of it. What does not apply is left as it is, and empty in the table. */
 struct Row {
   std::string effect, name; // of the experiment
+  std::string preset;       // of the library, or none
   std::string solver, multiplier;
   double substep = 0;
   std::uint32_t iterations = 0;
@@ -59,8 +60,13 @@ void cloth(Study &study);       // the stretch of a sheet, the sag of a strip
 void penetration(Study &study); // of sand into what it falls on
 void scaling(Study &study);     // with the number of particles, and the stages of a step
 
+/* The library's presets in an experiment whose frames are so long. */
+std::vector<Setting> presets(double frame);
+
 /* All forms at each substep and number of iterations. */
 std::vector<Setting> combine(const std::vector<Form> &forms, const std::vector<double> &substeps,
                              const std::vector<std::uint32_t> &iterations);
+
+void append(std::vector<Setting> &to, const std::vector<Setting> &more);
 
 } // namespace loam::accuracy
