@@ -1,6 +1,5 @@
 /* What a step with a tolerance reports of its error, against the step solved exactly. */
-#include "cantilever.h"
-#include "implicit_step.h"
+#include "exact_beam.h"
 
 namespace loam::test {
 namespace {
@@ -16,12 +15,9 @@ struct SwingingBeam {
     result.length = length;
     result.layers = layers;
     result.width = layers;
+    result.load = 12 * Cantilever::density * result.gravity * std::pow(result.metres(), 3) /
+                  (youngs_modulus * std::pow(layers * Cantilever::spacing, 2));
     return result;
-  }
-  loam_material_def material() const {
-    loam_material_def material = scenes::rubber(float(youngs_modulus));
-    material.density = float(Cantilever::density);
-    return material;
   }
   std::vector<float> velocities(const std::vector<float> &points) const {
     std::vector<float> result(points.size());
@@ -35,25 +31,13 @@ struct SwingingBeam {
 
   /* Velocities after the exact step. */
   reference::Vectors exact() const {
-    const std::vector<float> free = beam().free_points(), held = beam().held_points();
-    const auto columns = [](const std::vector<float> &points) {
-      return reference::Vectors(
-          Eigen::Map<const Eigen::Matrix<float, 3, Eigen::Dynamic>>(points.data(), 3, Eigen::Index(points.size() / 3))
-              .cast<double>());
-    };
-    reference::ImplicitStep::Settings settings;
-    settings.gravity = {0, -Cantilever::gravity, 0};
-    settings.zero_energy_stiffness = 10;
-    reference::ImplicitStep step(settings, reference::Material<double>::from(material()));
-    const double volume = std::pow(Cantilever::spacing, 3);
-    step.add_particles(columns(free), columns(velocities(free)), volume);
-    step.add_particles(columns(held), reference::Vectors::Zero(3, Eigen::Index(held.size() / 3)), volume, true);
-    step.advance(this->step);
-    reference::Vectors result(3, columns(free).cols());
-    const reference::Particles<double> &after = step.particles();
-    for (std::size_t i = 0; i < after.size(); ++i)
-      if (Eigen::Index(after.ids[i]) < result.cols()) result.col(Eigen::Index(after.ids[i])) = after.motions[i].velocity;
-    return result;
+    reference::ImplicitStep exact = exact_beam(beam(), beam().gravity, 1e-9);
+    const reference::Vectors free = columns(velocities(beam().free_points()));
+    reference::Vectors all = reference::Vectors::Zero(3, Eigen::Index(exact.particles().size()));
+    all.leftCols(free.cols()) = free;
+    exact.set_velocities(all);
+    exact.advance(step);
+    return exact.velocities_by_id().leftCols(free.cols());
   }
 
   struct Outcome {
@@ -62,10 +46,10 @@ struct SwingingBeam {
   };
   Outcome run(const loam_accuracy_def &accuracy, const reference::Vectors &exact) const {
     const std::vector<float> free = beam().free_points();
-    Solid solid(material(), free);
+    Solid solid(beam().material(), free);
     solid.held = beam().held_points();
     solid.def.solver = solver;
-    solid.def.gravity[1] = float(-Cantilever::gravity);
+    solid.def.gravity[1] = float(-beam().gravity);
     solid.def.velocity_smoothing = 0;
     solid.def.minimum_distance = 0;
     const std::vector<float> start = solid.scene.velocities = velocities(free);
@@ -75,7 +59,7 @@ struct SwingingBeam {
     const scenes::Snapshot now = world.snapshot();
     double error = 0, all = 0;
     for (std::size_t i = 0; i < free.size(); ++i) {
-      const double fall = i % 3 == 1 ? -Cantilever::gravity * step : 0;
+      const double fall = i % 3 == 1 ? -beam().gravity * step : 0;
       const double v = exact(Eigen::Index(i % 3), Eigen::Index(i / 3));
       error += std::pow(double(now.velocities[i]) - v, 2);
       all += std::pow(v - double(start[i]) - fall, 2);
