@@ -32,7 +32,8 @@ enum {
   LOAM_SUBSTEPS_SPEED = 3,     /* the fastest matter, stream or collider: neighbours are those of a substep's start */
   LOAM_SUBSTEPS_STIFFNESS = 4, /* elastic waves in the stiffest material, see loam_accuracy_def.courant */
   LOAM_SUBSTEPS_MOST = 5,      /* more were asked for, but most_substeps bounds them */
-  LOAM_SUBSTEPS_BUDGET = 6     /* as many as the budget pays for */
+  LOAM_SUBSTEPS_BUDGET = 6,    /* as many as the budget pays for */
+  LOAM_SUBSTEPS_CLOTH = 7      /* cloth: few substeps leave soft sheets far too long */
 };
 
 typedef struct loam_accuracy_def {
@@ -41,7 +42,7 @@ typedef struct loam_accuracy_def {
 
   /* Substeps of a step: 1 to 10000, default 16. 0: chosen anew at the beginning of each step, the least number in which
    *   an elastic wave crosses at most `courant` kernel radii,   matter goes half a kernel radius at most (less where courant is under 3: courant / 6), and
-   *   what falls from rest at most half of one,
+   *   what falls from rest at most half of one,   and, where there is cloth, courant / 1440 s at most go by
    * all within a substep, but no more than most_substeps. With BUDGET it has to be 0. */
   uint32_t substeps;
 

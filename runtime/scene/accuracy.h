@@ -20,9 +20,10 @@ void check_accuracy(const loam_accuracy_def &def);
 struct StepNeeds {
   double seconds;
   double kernel_radius;
-  double speed;      // of the fastest matter, m/s
-  double wave_speed; // of the stiffest, m/s
-  double gravity;    // m/s^2
+  double speed;       // of the fastest matter, m/s
+  double wave_speed;  // of the stiffest, m/s
+  double gravity;     // m/s^2
+  bool cloth = false; // is there any?
 };
 
 struct StepChoice {

@@ -184,6 +184,7 @@ loam::StepChoice loam_world::choose_step(float seconds) {
   const float *g = &input_.gravity.x;
   StepNeeds needs = {static_cast<double>(seconds), static_cast<double>(def_.kernel_radius), backend_->greatest_speed(), 0,
                      std::hypot(static_cast<double>(g[0]), static_cast<double>(g[1]), static_cast<double>(g[2]))};
+  needs.cloth = cloths_.any();
   for (std::size_t i = 0; i < materials_.size(); ++i)
     if (const Material *m = materials_.at_index(i); m != nullptr && (m->particles > 0 || m->emitters > 0))
       needs.wave_speed = std::max(needs.wave_speed, wave_speed(m->def));

@@ -39,6 +39,13 @@ TEST(ChooseSubsteps, WhatAsksForMostDecides) {
   EXPECT_EQ(choose_substeps(default_accuracy(), needs(3, 3600)).reason, std::uint32_t(LOAM_SUBSTEPS_GIVEN));
 }
 
+TEST(ChooseSubsteps, ClothAsksForItsOwn) {
+  StepNeeds with_cloth = needs(0, 0);
+  with_cloth.cloth = true;
+  EXPECT_EQ(choose_substeps(chosen(), with_cloth).substeps, 8u); // 2.08 ms
+  EXPECT_EQ(choose_substeps(chosen(), with_cloth).reason, std::uint32_t(LOAM_SUBSTEPS_CLOTH));
+}
+
 TEST(ChooseSubsteps, ASmallerCourantNumberCutsSpeedsToo) {
   loam_accuracy_def def = chosen();
   def.courant = 1;
