@@ -1,14 +1,16 @@
 #!/usr/bin/python3
 """Writes docs/accuracy.html, the page of the accuracy study, from the table that loam-accuracy wrote.
 
-    accuracy.py TABLE [--out FILE]
+    accuracy.py TABLE [--out FILE] [--pictures DIR]
 
 Every number on the page comes from the table; the page loads nothing from elsewhere.
 """
 
 import argparse
+import base64
 import datetime
 import html
+import json
 import pathlib
 import re
 import subprocess
@@ -30,6 +32,8 @@ table { border-collapse: collapse; font-size: .92rem; margin: 1rem 0; display: b
 th, td { padding: .3rem .7rem; text-align: right; border-bottom: 1px solid #8884; } th { font-weight: 600; }
 th:first-child, td:first-child { text-align: left; } td:not(:last-child) { white-space: nowrap; }
 .finding { border-left: 4px solid #3b82f6; padding: .2rem .9rem; background: #3b82f61a; }
+.pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(20rem, 1fr)); gap: 1rem; margin: 1rem 0; } .pictures figure { margin: 0; }
+.pictures img { width: 100%; height: auto; border-radius: 4px; display: block; }
 .small { font-size: .88rem; opacity: .8; } code { font-size: .9em; }
 """
 
@@ -331,14 +335,30 @@ def processor():
     return "unknown processor"
 
 
-def page(rows):
+def pictures(directory):
+    """The same scene with each preset, from what loam-run left of it in the directory."""
+    if directory is None:
+        return ""
+    figures, cheapest_frame = [], None
+    for preset in ("fast", "balanced", "accurate", "reference"):
+        run = json.loads((directory / preset / "stats.json").read_text(encoding="utf-8"))
+        cheapest_frame = cheapest_frame or run["seconds_per_frame"]
+        image = base64.b64encode((directory / f"{preset}.png").read_bytes()).decode("ascii")
+        caption = (f"<b>{preset}</b>: {digits(run['substeps_per_frame'])} substeps of {digits(run['iterations_per_substep'])} iterations a frame, "
+                   f"{times(run['seconds_per_frame'] / cheapest_frame)} the time of the first")
+        figures.append(f'<figure><img alt="A rubber bridge, {preset}" src="data:image/png;base64,{image}"><figcaption class="small">{caption}</figcaption></figure>')
+    return ("<h2>What it looks like</h2><p>A bridge of rubber, two seconds after it was let go on its piers. Coarse settings act softer than the material is, so it sags further; more than "
+            "is needed buys nothing that could be seen.</p><div class=\"pictures\">" + "".join(figures) + "</div>")
+
+
+def page(rows, directory):
     commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=False).stdout.strip()
     body = ["<h1>How accurate a setting is, and what it costs</h1>",
             "<p>A world is given substeps and iterations. Substeps cut a frame into shorter ones; iterations work on the equations of each. This page shows, for each effect, how far from a "
             "reference a setting ends and what it costs, so that you can pay for what you need: each effect stands for a look or a measure that a player or a designer would notice.</p>",
             f'<p class="small">{html.escape(processor())}, one thread, {datetime.date.today():%d %B %Y}{", commit " + commit if commit else ""}. Times are seconds of the processor, the median of '
             "the frames; the scenes have 240 to 1440 particles.</p>",
-            "<h2>What settings cost and buy</h2>", overview(rows)]
+            "<h2>What settings cost and buy</h2>", overview(rows), pictures(directory)]
     body += [effect_section(rows, effect) for effect in EFFECTS]
     body += [equal_error(rows), calibration(rows), costs(rows),
              "<h2>To do it again</h2><p><code>scripts/accuracy.sh</code> builds, measures (about ten minutes) and writes this page; <code>scripts/accuracy.sh --quick</code> "
@@ -352,9 +372,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("table", type=pathlib.Path)
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs" / "accuracy.html")
+    parser.add_argument("--pictures", type=pathlib.Path, help="the folder that accuracy.sh puts pictures of the presets into")
     arguments = parser.parse_args()
     rows = read(arguments.table)
-    arguments.out.write_text(page(rows), encoding="utf-8")
+    arguments.out.write_text(page(rows, arguments.pictures), encoding="utf-8")
     print(f"{len(rows)} rows made {arguments.out}")
 
 

@@ -10,16 +10,22 @@ mkdir -p "$output"
 scripts/install_dependencies.sh docs
 if [[ ! -f build/release/CMakeCache.txt ]]; then configure release; fi
 say "Building"
-cmake --build --preset release --target loam-accuracy
+cmake --build --preset release --target loam-accuracy loam-run
 say "Measuring"
 build/release/benchmarks/loam-accuracy --out "$output" "$@"
 
-table=$output/accuracy.csv page=$output/accuracy.html
+table=$output/accuracy.csv page=$output/accuracy.html pictures=()
 if [[ $# -eq 0 ]]; then
   model=$(lscpu | sed -n 's/^Model name: *//p' | sed -n 1p)
   table=benchmarks/results/accuracy-$(tr -cs '[:alnum:]\n' '-' <<<"$model" | tr '[:upper:]' '[:lower:]' | sed 's/-$//').csv
   page=docs/accuracy.html
   cp "$output/accuracy.csv" "$table"
+  say "Pictures"
+  for preset in fast balanced accurate reference; do # of the last frame
+    build/release/samples/loam-run docs/accuracy/bridge.toml --out "$output/$preset" --accuracy "$preset" --ply-every 0 --picture-every 120
+    python3 scripts/shrink_png.py "$output/$preset/frame_0120.png" "$output/$preset.png" 440
+  done
+  pictures=(--pictures "$output")
 fi
 say "Writing"
-/usr/bin/python3 scripts/accuracy.py "$table" --out "$page"
+/usr/bin/python3 scripts/accuracy.py "$table" --out "$page" "${pictures[@]}"

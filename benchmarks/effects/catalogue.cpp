@@ -34,12 +34,25 @@ void scalar_multiplier(Setup &setup) { setup.def.multiplier = LOAM_MULTIPLIER_SC
 void no_position_correction(Setup &setup) { setup.def.minimum_distance = 0; }
 void no_velocity_smoothing(Setup &setup) { setup.def.velocity_smoothing = 0; }
 void jacobi(Setup &setup) { setup.def.solver = LOAM_SOLVER_JACOBI; }
+/* What looking after each of as many iterations costs. */
+void tolerance(Setup &setup) {
+  const loam_world_def def = setup.def;
+  setup.additions.push_back([def](loam_world *world, loam_material_id) {
+    loam_accuracy_def accuracy;
+    require(loam_accuracy_def_default(&accuracy, sizeof accuracy), "loam_accuracy_def_default");
+    accuracy.mode = LOAM_ACCURACY_TOLERANCE;
+    accuracy.substeps = def.substeps;
+    accuracy.iterations = def.iterations;
+    accuracy.tolerance = LOAM_LEAST_TOLERANCE;
+    require(loam_world_use_accuracy(world, &accuracy), "loam_world_use_accuracy");
+  });
+}
 void sleep_allowed(Setup &setup) { setup.def.sleep_speed = 1e-9f; /* as good as never: what watching costs */ }
 
 /* ---------------------------------------------------------------------------------------------- the materials --- */
 
 /* The upper half of the particles is made of something else. */
-template <std::uint32_t Law> void upper_half_of(Setup &setup) {
+template <std::uint32_t Law> void upper_half_of(Setup &setup, void (*change)(loam_material_def &)) {
   const Box box = bounds(setup.scene);
   const float middle = 0.5f * (box.lower[1] + box.upper[1]);
   std::vector<float> upper, lower;
@@ -50,9 +63,10 @@ template <std::uint32_t Law> void upper_half_of(Setup &setup) {
   }
   setup.scene.positions = lower;
   setup.scene.velocities.clear();
-  setup.additions.push_back([upper](loam_world *world, loam_material_id) {
+  setup.additions.push_back([upper, change](loam_world *world, loam_material_id) {
     loam_material_def def;
     require(loam_material_def_default(Law, &def, sizeof def), "loam_material_def_default");
+    change(def);
     loam_material_id material;
     require(loam_material_create(world, &def, &material), "loam_material_create");
     loam_particles_def particles;
@@ -62,6 +76,17 @@ template <std::uint32_t Law> void upper_half_of(Setup &setup) {
     particles.positions = upper.data();
     require(loam_particles_add(world, &particles, nullptr), "loam_particles_add");
   });
+}
+
+template <std::uint32_t Law> void upper_half_of(Setup &setup) {
+  upper_half_of<Law>(setup, [](loam_material_def &) {});
+}
+
+void viscous_water(Setup &setup) {
+  upper_half_of<LOAM_LAW_FLUID>(setup, [](loam_material_def &def) { def.viscosity = 1; });
+}
+void water_with_a_skin(Setup &setup) {
+  upper_half_of<LOAM_LAW_FLUID>(setup, [](loam_material_def &def) { def.surface_tension = 0.072f; });
 }
 
 void two_sands(Setup &setup) { upper_half_of<LOAM_LAW_DRUCKER_PRAGER>(setup); }
@@ -223,6 +248,7 @@ std::vector<Effect> all() {
       {"solver", "position correction", "", no_position_correction, nullptr},
       {"solver", "velocity smoothing", "", no_velocity_smoothing, nullptr},
       {"solver", "Jacobi", "instead of Gauss-Seidel, at as many iterations", nullptr, jacobi},
+      {"solver", "a tolerance", "that all iterations are needed for", nullptr, tolerance},
       {"solver", "sleep, nothing asleep", "", nullptr, sleep_allowed},
       {"materials", "a second material of the same law", "half the sand", nullptr, two_sands},
       {"materials", "contact between two materials", "the halves stay apart", two_sands, two_sands_in_contact},
@@ -233,6 +259,8 @@ std::vector<Effect> all() {
        upper_half_of<LOAM_LAW_HERSCHEL_BULKLEY>},
       {"materials", "Stomakhin's snow", "half the sand is snow", two_sands, upper_half_of<LOAM_LAW_STOMAKHIN_SNOW>},
       {"materials", "fluid", "half the sand is water", two_sands, upper_half_of<LOAM_LAW_FLUID>},
+      {"materials", "its viscosity", "1 Pa s, as of syrup", upper_half_of<LOAM_LAW_FLUID>, viscous_water},
+      {"materials", "its surface tension", "that of water", upper_half_of<LOAM_LAW_FLUID>, water_with_a_skin},
       {"colliders", "a sphere", "touches the sand", nullptr, sphere<false>},
       {"colliders", "its reaction", "the sphere asks for it", sphere<false>, sphere<true>},
       {"colliders", "a mesh of 1 280 triangles", "the same sphere", nullptr, ball_of_triangles<3>},

@@ -85,7 +85,7 @@ loam_accuracy_def parse_accuracy(const std::string &text) {
   return def;
 }
 
-std::string describe(const loam_accuracy_def &def) {
+std::string accuracy_text(const loam_accuracy_def &def) {
   for (const auto &[name, preset] : presets) {
     loam_accuracy_def known;
     check(loam_accuracy_def_preset(preset, &known, sizeof known));

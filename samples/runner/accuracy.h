@@ -12,6 +12,6 @@ namespace runner {
 loam_accuracy_def parse_accuracy(const std::string &text);
 
 // The other way round, in the form in which it can be given again where there is one.
-std::string describe(const loam_accuracy_def &def);
+std::string accuracy_text(const loam_accuracy_def &def);
 
 } // namespace runner

@@ -77,7 +77,7 @@ int run(const Options &options) {
   statistics.has_sides = containment.sides() != 0;
   fmt::print(stderr, "{}: {} particles, kernel radius {:.4g} m, accuracy {}, {} frames, {}{}{}, {} thread{}\n",
              scene.title.empty() ? scene.path.string() : scene.title, statistics.particles, scene.world.kernel_radius,
-             describe(simulation.accuracy()), scene.frames, statistics.backend,
+             accuracy_text(simulation.accuracy()), scene.frames, statistics.backend,
              statistics.instruction_set.empty() ? "" : " ", statistics.instruction_set, threads, threads == 1 ? "" : "s");
 
   double empty_frames = 0; // for how many frames the watched region has been empty
@@ -115,7 +115,7 @@ int run(const Options &options) {
   if (!statistics.frames.empty()) statistics.particles = statistics.frames.back().statistics.particles;
   statistics.interrupted = interrupted != 0;
   statistics.memory = simulation.memory();
-  statistics.accuracy = describe(simulation.accuracy());
+  statistics.accuracy = accuracy_text(simulation.accuracy());
   statistics.over_budget = simulation.over_budget();
   statistics.state_hash = simulation.state_hash();
   output.write("series.csv", make_series_csv(statistics));

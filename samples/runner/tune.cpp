@@ -50,7 +50,7 @@ double difference(const std::vector<Vector3> &a, const std::vector<Vector3> &b) 
   return std::sqrt(sum / double(a.size()));
 }
 
-struct Row {
+struct Measured {
   loam_accuracy_def setting;
   double substeps = 0, iterations = 0; // of a frame, on average over the moments
   double seconds = 0;                  // of a frame
@@ -92,8 +92,8 @@ public:
   }
 
   // Over the moments from `first` to before `last`.
-  Row measure(const loam_accuracy_def &setting, std::size_t first, std::size_t last) {
-    Row row;
+  Measured measure(const loam_accuracy_def &setting, std::size_t first, std::size_t last) {
+    Measured row;
     row.setting = setting;
     double squares = 0;
     const double count = double(last - first);
@@ -138,8 +138,8 @@ std::vector<loam_accuracy_def> candidates(const Scene &scene) {
   return settings;
 }
 
-void print(const Row &row, const char *note) {
-  fmt::print("{:>16} {:>9.1f} {:>11.1f} {:>12.2f} {:>12.4f}  {}\n", describe(row.setting), row.substeps, row.iterations,
+void print(const Measured &row, const char *note) {
+  fmt::print("{:>16} {:>9.1f} {:>11.1f} {:>12.2f} {:>12.4f}  {}\n", accuracy_text(row.setting), row.substeps, row.iterations,
              1e3 * row.seconds, row.error, note);
 }
 
@@ -153,16 +153,16 @@ int tune(const Options &options) {
 
   // The last moment is kept for checking.
   const std::size_t last = tuning.moment_count() - 1;
-  std::vector<Row> rows;
+  std::vector<Measured> rows;
   {
     const std::vector<loam_accuracy_def> settings = candidates(scene);
     ProgressBar progress(settings.size(), "settings");
     for (const loam_accuracy_def &setting : settings) {
-      progress.show(rows.size(), describe(setting));
+      progress.show(rows.size(), accuracy_text(setting));
       rows.push_back(tuning.measure(setting, 0, last));
     }
   }
-  std::sort(rows.begin(), rows.end(), [](const Row &a, const Row &b) { return a.seconds < b.seconds; });
+  std::sort(rows.begin(), rows.end(), [](const Measured &a, const Measured &b) { return a.seconds < b.seconds; });
 
   fmt::print(
       "\n{}, frames of {:.3g} ms. The error is how far particles and cloth are from where the setting \"reference\" takes "
@@ -171,8 +171,8 @@ int tune(const Options &options) {
       scene.title.empty() ? scene.path.string() : scene.title, 1e3 / scene.frame_rate, last, tuning.motion());
   fmt::print("{:>16} {:>9} {:>11} {:>12} {:>12}\n", "setting", "substeps", "iterations", "ms a frame", "error");
   double least = std::numeric_limits<double>::infinity();
-  const Row *good_enough = nullptr, *twice_as_good = nullptr, *best = nullptr;
-  for (const Row &row : rows) {
+  const Measured *good_enough = nullptr, *twice_as_good = nullptr, *best = nullptr;
+  for (const Measured &row : rows) {
     // Nothing cheaper is as accurate.
     const bool worthwhile = row.error < least;
     least = std::min(least, row.error);
@@ -189,13 +189,13 @@ int tune(const Options &options) {
   }
   if (good_enough == nullptr)
     throw Error("no setting could be compared with the reference: particles came or went differently");
-  const Row checked = tuning.measure(good_enough->setting, last, last + 1);
+  const Measured checked = tuning.measure(good_enough->setting, last, last + 1);
   fmt::print("Recommended: --accuracy {} ({:.2f} ms a frame, error {:.4f}). At another moment of the scene it took {:.2f} "
              "ms, with an error of {:.4f}.\n",
-             describe(good_enough->setting), 1e3 * good_enough->seconds, good_enough->error, 1e3 * checked.seconds,
+             accuracy_text(good_enough->setting), 1e3 * good_enough->seconds, good_enough->error, 1e3 * checked.seconds,
              checked.error);
   if (twice_as_good != nullptr)
-    fmt::print("Twice as accurate: --accuracy {}, for {:.2f} times the time.\n", describe(twice_as_good->setting),
+    fmt::print("Twice as accurate: --accuracy {}, for {:.2f} times the time.\n", accuracy_text(twice_as_good->setting),
                twice_as_good->seconds / good_enough->seconds);
   return 0;
 }

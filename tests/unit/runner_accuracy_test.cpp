@@ -16,7 +16,7 @@ void expect_refused(const std::string &text, const std::vector<std::string> &par
 
 TEST(RunnerAccuracy, EveryFormIsUnderstoodAndDescribedAsItWasGiven) {
   for (const char *text : {"fast", "balanced", "accurate", "reference", "tolerance=0.02", "budget=8", "12x3"})
-    EXPECT_EQ(runner::describe(runner::parse_accuracy(text)), text);
+    EXPECT_EQ(runner::accuracy_text(runner::parse_accuracy(text)), text);
   const loam_accuracy_def budget = runner::parse_accuracy("budget=8");
   EXPECT_EQ(budget.mode, std::uint32_t(LOAM_ACCURACY_BUDGET));
   EXPECT_FLOAT_EQ(budget.budget, 0.008f);
@@ -48,7 +48,7 @@ TEST(RunnerAccuracy, ASceneMayChooseIt) {
   const std::string with = "[world]\naccuracy = \"fast\"" + block.substr(7);
   runner::Scene scene = runner::read_scene(folder.write("scene.toml", with));
   scene.world.backend = LOAM_BACKEND_CPU;
-  EXPECT_EQ(runner::describe(runner::Simulation(scene).accuracy()), "fast");
+  EXPECT_EQ(runner::accuracy_text(runner::Simulation(scene).accuracy()), "fast");
   const auto error = [&](const std::string &world) {
     const auto path = folder.write("scene.toml", "[world]\n" + world + block.substr(7));
     return error_text([&] { (void)runner::read_scene(path); });
@@ -70,7 +70,7 @@ TEST(RunnerAccuracy, AStateIsGoneBackTo) {
   EXPECT_EQ(simulation.statistics().substeps, 3u);
   const std::uint64_t hash = simulation.state_hash();
   simulation.restore(state);
-  EXPECT_EQ(runner::describe(simulation.accuracy()), "16x5");
+  EXPECT_EQ(runner::accuracy_text(simulation.accuracy()), "16x5");
   simulation.use_accuracy(runner::parse_accuracy("3x2"));
   simulation.step();
   EXPECT_EQ(simulation.state_hash(), hash);
