@@ -240,17 +240,17 @@ typedef struct loam_statistics {
 
   /* What the step did for accuracy, see accuracy.h. */
   uint32_t substeps;          /* that it was cut into */
-  uint32_t iterations;        /* of each substep; with a tolerance, the most that one took */
+  uint32_t iterations;        /* of each substep that has something to solve; with a tolerance, the most that one took */
   uint32_t substeps_reason;   /* LOAM_SUBSTEPS_* */
   uint32_t substeps_unsolved; /* with a tolerance: those whose iterations ended above it */
   uint64_t iterations_done;   /* of all substeps together */
   double solution_error;      /* with a tolerance: the greatest of the substeps' estimates; otherwise 0 */
   double least_budget;        /* with a budget: seconds that what stability needs takes, by the costs so far; otherwise 0 */
 
-  /* How far the last substep's end is from what it should keep to. */
+  /* How far matter was from what it should keep to, at the start of the last substep. */
   double density_error; /* of fluids: the mean compression, density over rest density less 1, 0 where it is less */
   double stretch;       /* of cloth: the greatest stretch of a triangle in any direction, less 1; 0 without */
-  double penetration;   /* m: how deep spheres of radius r/2 around particles are within contact planes, at most */
+  double penetration;   /* m: how deep a sphere of radius r/2 around a particle was within a collider, at most */
 } loam_statistics;
 
 /* Errors: INVALID_ARGUMENT for null or an unknown struct_size. */

@@ -1,13 +1,14 @@
 // How far the iterations of a substep have come, for a step that iterates to a tolerance.
 //
-// With the changes d_k of the velocities in iteration k, relative to what all constraints together have changed, the iterations still to come change d_k (q + q^2 + ...)
-// where they shrink by q = d_k / d_k-1 each: that is the estimate of the error. In Gauss-Seidel it is within a factor of two of the true one where elastic waves cross
-// less than about five kernel radii. Damped Jacobi soon has fast modes behind it and slow ones still hidden, so q counts as 0.9 at least. Matter and each cloth are asked apart, for they hardly feel each other's iterations; the
-// greatest counts.
+// With the changes d_k of the velocities in iteration k, relative to what all constraints together have changed, the iterations still to come
+// change d_k (q + q^2 + ...) where they shrink by q = d_k / d_k-1 each: that is the estimate of the error. In Gauss-Seidel it is within a factor of two
+// of the true one where elastic waves cross less than about five kernel radii. Damped Jacobi soon has fast modes behind it and slow ones still hidden,
+// so q counts as 0.9 at least. Matter and each cloth are asked apart, for they hardly feel each other's iterations; the greatest counts.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -32,8 +33,8 @@ public:
   }
   std::uint64_t bytes() const { return free_.bytes() + before_.bytes(); }
 
-  // Each of these walks the bodies: for_each(f) calls f(count, velocities) for each, always in the same order. `step` is the norm of what gravity gives a unit of mass in a
-  // substep.
+  // Each of these walks the bodies: for_each(f) calls f(count, velocities) for each, always in the same order. `fall` is the speed that gravity gives in
+  // a substep.
   template <class ForEach> void begin(const ForEach &for_each) {
     copy(for_each, free_.data());
     bodies_.clear();

@@ -323,13 +323,10 @@ template <class Executor> void Solver<Executor>::finish_statistics(const StepInp
   statistics_.cloth_tears = cloth_.tear_count();
   if (schedule_.sleep >= 0)
     statistics_.sleeping = static_cast<std::uint64_t>(executor_.reduce(count_, CountSleepers{now_.rests.data()}));
-  statistics_.contacts = 0;
-  if (contact_count_ > 0) {
-    const MeasurePlanes::Value planes =
-        executor_.reduce(contact_count_, MeasurePlanes{contacts_.data(), now_.velocities.data(), h_});
-    statistics_.contacts = static_cast<std::uint64_t>(planes.count);
-    statistics_.penetration = static_cast<double>(planes.penetration);
-  }
+  MeasureContacts::Value contacts = MeasureContacts::identity();
+  if (contact_count_ > 0) contacts = executor_.reduce(contact_count_, MeasureContacts{contacts_.data()});
+  statistics_.contacts = static_cast<std::uint64_t>(contacts.planes);
+  statistics_.penetration = static_cast<double>(contacts.depth);
   if (fluids_.in_use && count_ > 0) {
     const MeanCompression::Value compression =
         executor_.reduce(count_, MeanCompression{fluids_.is_fluid.data(), now_.materials.data(), now_.strains.data()});

@@ -172,6 +172,7 @@ template <class Executor> void Solver<Executor>::iterate(const StepInput &input)
   const double fall = static_cast<double>(h_ * length(input.gravity));
   while (iterations_done_ < input.iterations && !(iterations_done_ > 1 && convergence_.error() <= input.tolerance)) {
     convergence_.begin_iteration(bodies);
+    lap(schedule_.convergence, 0);
     iterate_once(input);
     ++iterations_done_;
     convergence_.end_iteration(bodies, fall);

@@ -138,6 +138,83 @@ TEST_F(Accuracy, ABudgetsChoicesMakeTheSameBitsAgain) {
   }
 }
 
+/* Nothing is solved, yet the choice is told as one that can be given again. */
+TEST_F(Accuracy, ABudgetOfAnEmptyWorldCanBeReplayed) {
+  scenes::World empty(definition(scene_));
+  const loam_accuracy_def def = of_mode(LOAM_ACCURACY_BUDGET);
+  ASSERT_EQ(loam_world_use_accuracy(empty.get(), &def), LOAM_OK);
+  for (int frame = 0; frame < 3; ++frame) empty.step(1.0f / 60);
+  const loam_statistics now = empty.statistics();
+  EXPECT_EQ(now.iterations_done, 0u);
+  EXPECT_EQ(loam_world_set_accuracy(empty.get(), now.substeps, now.iterations), LOAM_OK) << loam_last_error();
+}
+
+/* A stream without room is told of after every step; what the steps cost is learnt all the same. */
+TEST_F(Accuracy, ABudgetIsKeptWhileAStreamIsFull) {
+  loam_world_def world_def = definition(scene_);
+  world_def.particle_capacity = scene_.count();
+  scenes::World full(world_def, scene_);
+  loam_material_id material = 0;
+  ASSERT_EQ(loam_material_create(full.get(), &scene_.material, &material), LOAM_OK);
+  loam_emitter_def emitter;
+  ASSERT_EQ(loam_emitter_def_default(&emitter, sizeof emitter), LOAM_OK);
+  emitter.material = material;
+  emitter.position[1] = 1;
+  emitter.radius = 0.02f;
+  emitter.speed = 10;
+  loam_emitter_id id = 0;
+  ASSERT_EQ(loam_emitter_create(full.get(), &emitter, &id), LOAM_OK) << loam_last_error();
+  loam_accuracy_def def = of_mode(LOAM_ACCURACY_BUDGET);
+  def.budget = 0.05f; // pays for far more than stability needs
+  def.most_substeps = 40;
+  ASSERT_EQ(loam_world_use_accuracy(full.get(), &def), LOAM_OK);
+  for (int frame = 0; frame < 3; ++frame) EXPECT_EQ(loam_world_step(full.get(), 1.0f / 60), LOAM_ERROR_CAPACITY);
+  EXPECT_EQ(full.statistics().substeps, 40u);
+  EXPECT_GT(full.statistics().least_budget, 0);
+}
+
+/* A particle 0.3 r above a plane: 0.2 r too near. It is moved out; but not from a slot of 0.6 r. */
+TEST_F(Accuracy, PenetrationIsHowMuchIsMissingToHalfTheRadius) {
+  scenes::Scene lone;
+  lone.material = scenes::rubber();
+  lone.spacing = 0.01f;
+  lone.positions = {0, 0.003f, 0};
+  lone.planes = {{{0, 0, 0}, {0, 1, 0}, 0}};
+  const auto after = [&](int steps) {
+    loam_world_def def = scenes::world_def(lone);
+    def.substeps = 1;
+    scenes::World world(def, lone);
+    for (int k = 0; k < steps; ++k) world.step(2e-3f);
+    return world.statistics().penetration;
+  };
+  EXPECT_NEAR(after(1), 0.002, 1e-6);
+  EXPECT_NEAR(after(500), 0, 2e-5);
+  lone.planes.push_back({{0, 0.006f, 0}, {0, -1, 0}, 0});
+  EXPECT_NEAR(after(500), 0.002, 2e-4);
+}
+
+TEST_F(Accuracy, DensityErrorIsTheMeanCompressionThatTheViewShows) {
+  for (const float spacing : {0.009f, 0.01f}) {
+    scenes::Scene water;
+    water.spacing = 0.01f;
+    ASSERT_EQ(loam_material_def_default(LOAM_LAW_FLUID, &water.material, sizeof water.material), LOAM_OK);
+    for (int i = 0; i < 512; ++i)
+      for (const int place : {i % 8, i / 8 % 8, i / 64}) water.positions.push_back(spacing * float(place));
+    loam_world_def def = scenes::world_def(water);
+    def.substeps = 1;
+    scenes::World world(def, water);
+    world.step(1e-4f);
+    loam_particle_view view = {};
+    view.struct_size = sizeof view;
+    ASSERT_EQ(loam_particles_map(world.get(), &view), LOAM_OK);
+    double sum = 0;
+    for (std::uint64_t i = 0; i < view.count; ++i) sum += std::max(0.0, double(view.densities[i]) / 1000 - 1);
+    ASSERT_EQ(loam_particles_unmap(world.get()), LOAM_OK);
+    EXPECT_NEAR(world.statistics().density_error, sum / 512, 1e-4);
+    EXPECT_EQ(world.statistics().density_error > 0.05, spacing < 0.01f);
+  }
+}
+
 TEST_F(Accuracy, ABudgetTooSmallIsToldAndTheStepIsDone) {
   loam_accuracy_def def = of_mode(LOAM_ACCURACY_BUDGET);
   def.budget = 1e-9f;

@@ -37,6 +37,18 @@ TEST(ClothPhysics, AStripHangsInACatenary) {
   }
 }
 
+/* It is greatest in the row of triangles that all others hang on: (1 - 1/32) of weight over stiffness. */
+TEST(ClothPhysics, TheStatisticsTellTheGreatestStretch) {
+  double stretch = 0;
+  Course course;
+  course.step = [&](scenes::World &world, float seconds) {
+    world.step(seconds);
+    stretch = world.statistics().stretch;
+  };
+  (void)hanging_length({20, 16}, 30, 0, course);
+  EXPECT_NEAR(stretch, (1 - 1.0 / 32) * 0.15 * 9.81 / 30, 0.002);
+}
+
 /* A strip clamped at one end, q L^3 / B = 1: the elastica's tip drops by .123 L, the chain of 16 hinges that it is here by .139 L. The grid's hinges give way to twisting
  * too, which makes it softer by up to a sixth. */
 double tip_drop(float bending) {

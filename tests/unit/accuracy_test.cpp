@@ -107,7 +107,7 @@ TEST(Budget, BelowWhatStabilityNeedsItTellsTheLeast) {
     control.learn(choice, machine.seconds(choice), machine.of_iterations(choice), machine.load, 0.008);
   }
   EXPECT_TRUE(choice.exceeds_budget);
-  EXPECT_NEAR(choice.least_budget, 1e-5 * 5 * (150 + 2 * 40) * 1e0, 0.0015); // 11.5 ms
+  EXPECT_NEAR(choice.least_budget, 1e-9 * 10000 * 5 * (150 + 2 * 40), 0.0015); // 11.5 ms
   control.forgive();
   def.budget = 0.02f; // pays for more iterations, but not for more substeps of five
   choice = control.choose(def, needs(3, 30), machine.load);

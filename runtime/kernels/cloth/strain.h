@@ -25,6 +25,12 @@ struct SquaredStretch {
   LOAM_FN float strain() const { return square_root(maximum(0.0f, 0.5f * (uu + vv) + root())) - 1.0f; }
 };
 
+// Three fields of a membrane's constraint, which stand `width` apart; `place` is batch times width plus lane.
+LOAM_FN Vec3<float> membrane_vector(const float *fields, int width, int place, int field) {
+  const float *own = fields + (static_cast<long>(place / width) * MembraneField::count + field) * width + place % width;
+  return {own[0], own[width], own[2 * static_cast<long>(width)]};
+}
+
 struct TriangleStrains {
   const Row *positions;
   const int *triangles;
@@ -51,16 +57,12 @@ struct TriangleStrains {
 private:
   // From what membrane.h keeps of the multipliers.
   LOAM_FN SquaredStretch borne(int i) const {
-    const int place = places[i];
-    const float *own = fields + static_cast<long>(place / width) * MembraneField::count * width + place % width;
-    const Vec3<float> warp = vector(own, MembraneField::warp), weft = vector(own, MembraneField::weft),
-                      answered = vector(own, MembraneField::answered);
+    const Vec3<float> warp = membrane_vector(fields, width, places[i], MembraneField::warp);
+    const Vec3<float> weft = membrane_vector(fields, width, places[i], MembraneField::weft);
+    const Vec3<float> answered = membrane_vector(fields, width, places[i], MembraneField::answered);
     const float u = 1.0f + (answered.x - damping * (length(warp) - 1.0f));
     const float v = 1.0f + (answered.y - damping * (length(weft) - 1.0f));
     return {u * u, v * v, answered.z - damping * dot(warp, weft)};
-  }
-  LOAM_FN Vec3<float> vector(const float *own, int field) const {
-    return {own[field * width], own[(field + 1) * width], own[(field + 2) * width]};
   }
 };
 
@@ -71,17 +73,12 @@ struct GreatestStretch {
   int width;
   LOAM_FN static Value identity() { return 0.0f; }
   LOAM_FN Value operator()(int place) const {
-    const float *own = fields + static_cast<long>(place / width) * MembraneField::count * width + place % width;
-    const Vec3<float> warp = vector(own, MembraneField::warp), weft = vector(own, MembraneField::weft);
+    const Vec3<float> warp = membrane_vector(fields, width, place, MembraneField::warp);
+    const Vec3<float> weft = membrane_vector(fields, width, place, MembraneField::weft);
     const float strain = SquaredStretch{dot(warp, warp), dot(weft, weft), dot(warp, weft)}.strain();
     return is_finite(strain) ? strain : 0.0f;
   }
   LOAM_FN static Value combine(Value a, Value b) { return maximum(a, b); }
-
-private:
-  LOAM_FN Vec3<float> vector(const float *own, int field) const {
-    return {own[field * width], own[(field + 1) * width], own[(field + 2) * width]};
-  }
 };
 
 struct GreatestStrain {

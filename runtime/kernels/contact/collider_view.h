@@ -42,6 +42,7 @@ struct Contact {
   static constexpr int max_planes = 4;
   int particle;
   int plane_count;
+  float depth;     // m: how much is missing to the stand-off, at the start of the substep; 0 where nothing is
   float clearance; // a motion that is shorter meets no collider, wherever it goes
   ContactPlane planes[max_planes];
   float normal_change[max_planes];

@@ -35,6 +35,7 @@ struct PlaneList {
   ContactPlane planes[Contact::max_planes];
   int collider[Contact::max_planes];
   int count = 0;
+  float depth = 0; // of the deepest that came in: how much is missing to the stand-off
 
   LOAM_FN void remove(int at) {
     --count;
@@ -45,7 +46,7 @@ struct PlaneList {
   }
 
   // Of planes of one collider within eight degrees of each other only the closest stays; of more than four the closest four.
-  LOAM_FN void insert(const ContactPlane &plane, int of) {
+  LOAM_FN void insert(const ContactPlane &plane, int of, float missing) {
     constexpr float parallel = 0.99f;
     for (int i = count - 1; i >= 0; --i) {
       if (collider[i] != of || !(dot(planes[i].normal, plane.normal) > parallel)) continue;
@@ -62,6 +63,7 @@ struct PlaneList {
     }
     planes[at] = plane;
     collider[at] = of;
+    depth = maximum(depth, missing);
   }
 };
 
@@ -103,6 +105,7 @@ template <bool Deforms> struct FindContactsOf {
     Contact &contact = contacts[slot];
     contact.particle = particle;
     contact.plane_count = list.count;
+    contact.depth = list.depth;
     contact.clearance = clearance;
     for (int i = 0; i < list.count; ++i) {
       contact.planes[i] = list.planes[i];
@@ -184,7 +187,7 @@ private:
     const Vec3<float> point = local.at - surface.distance * surface.normal;
     const ContactPlane plane = plane_at(local, point, surface.normal, surface.distance);
     if (!(plane.gap < reach) && !even_if_out_of_reach) return false;
-    list.insert(plane, local.collider);
+    list.insert(plane, local.collider, stand_off - surface.distance);
     return true;
   }
 
@@ -284,7 +287,7 @@ private:
     if (Deforms && mesh.end_packets != nullptr)
       drift = drift_of(packet, mesh.end_packets[packet_index], lane, local.at + closest.point, closest.feature);
     const ContactPlane plane = plane_at(local, local.at + closest.point, normal, distance, drift);
-    if (plane.gap < reach || even_if_out_of_reach) list.insert(plane, local.collider);
+    if (plane.gap < reach || even_if_out_of_reach) list.insert(plane, local.collider, stand_off - distance);
   }
 
   // How far a point of a triangle's feature moves with its vertices.

@@ -95,27 +95,16 @@ struct ContactMoment {
   LOAM_FN static Value combine(Value a, Value b) { return a + b; }
 };
 
-// Contact planes, and how deep a particle ended within the deepest.
-struct MeasurePlanes {
+// Contact planes, and the deepest contact.
+struct MeasureContacts {
   struct Value {
-    long long count;
-    float penetration; // m
+    long long planes;
+    float depth; // m
   };
   const Contact *contacts;
-  const Row *velocities;
-  float substep;
   LOAM_FN static Value identity() { return {0, 0}; }
-  LOAM_FN Value operator()(int i) const {
-    const Contact &contact = contacts[i];
-    const Vec3<float> way = substep * xyz(velocities[contact.particle]);
-    Value value = {contact.plane_count, 0};
-    for (int k = 0; k < contact.plane_count; ++k)
-      value.penetration = maximum(value.penetration, 0.0f - (contact.planes[k].gap + dot(contact.planes[k].normal, way)));
-    return value;
-  }
-  LOAM_FN static Value combine(const Value &a, const Value &b) {
-    return {a.count + b.count, maximum(a.penetration, b.penetration)};
-  }
+  LOAM_FN Value operator()(int i) const { return {contacts[i].plane_count, contacts[i].depth}; }
+  LOAM_FN static Value combine(const Value &a, const Value &b) { return {a.planes + b.planes, maximum(a.depth, b.depth)}; }
 };
 
 // Of fluids: density over rest density less 1, where it is more. A fluid keeps 1 / density - 1 for its strain.
