@@ -130,7 +130,9 @@ TEST_F(Accuracy, ABudgetsChoicesMakeTheSameBitsAgain) {
   def.most_substeps = 40;
   ASSERT_EQ(loam_world_use_accuracy(budgeted.get(), &def), LOAM_OK);
   for (int frame = 0; frame < 6; ++frame) {
-    budgeted.step(1.0f / 60);
+    /* Whether the budget was enough is for the machine to say; the step is done either way. */
+    const loam_status status = loam_world_step(budgeted.get(), 1.0f / 60);
+    ASSERT_TRUE(status == LOAM_OK || status == LOAM_ERROR_BUDGET) << loam_last_error();
     const loam_statistics chosen = budgeted.statistics();
     ASSERT_EQ(loam_world_set_accuracy(again.get(), chosen.substeps, chosen.iterations), LOAM_OK);
     again.step(1.0f / 60);
@@ -165,7 +167,7 @@ TEST_F(Accuracy, ABudgetIsKeptWhileAStreamIsFull) {
   loam_emitter_id id = 0;
   ASSERT_EQ(loam_emitter_create(full.get(), &emitter, &id), LOAM_OK) << loam_last_error();
   loam_accuracy_def def = of_mode(LOAM_ACCURACY_BUDGET);
-  def.budget = 0.05f; // pays for far more than stability needs
+  def.budget = 10; // pays for far more than stability needs, on any machine
   def.most_substeps = 40;
   ASSERT_EQ(loam_world_use_accuracy(full.get(), &def), LOAM_OK);
   for (int frame = 0; frame < 3; ++frame) EXPECT_EQ(loam_world_step(full.get(), 1.0f / 60), LOAM_ERROR_CAPACITY);
