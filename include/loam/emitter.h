@@ -2,7 +2,8 @@
  *
  * A nozzle is an opening that matter leaves in layers, one particle spacing apart along the flow, all at the same speed. A layer is led by the
  * nozzle, at that speed whatever stands in its way, until the next one enters; so no two particles of a stream enter closer than the spacing less
- * its jitter, and the flow does not depend on what it runs into.
+ * its jitter, and the flow does not depend on what it runs into. So that a stream shows no layers, each place of the opening is ahead or behind by a
+ * share of the spacing that is its own in every layer, up to a half: matter enters from half a spacing before the opening to half a spacing behind it.
  *
  * Thread contract: as for the world; during an asynchronous step every function here that takes a world answers LOAM_ERROR_BUSY.
  */

@@ -13,6 +13,15 @@ namespace loam {
 
 namespace {
 
+// Where in the distance between layers each place has its particle: all shares of it alike, from -1/2 to 1/2, in a random order.
+std::vector<double> make_phases(std::size_t places, std::uint32_t seed) {
+  std::vector<double> phases(places);
+  for (std::size_t i = 0; i < places; ++i) phases[i] = (static_cast<double>(i) + 0.5) / static_cast<double>(places) - 0.5;
+  Random random = {seed};
+  for (std::size_t i = places; i > 1; --i) std::swap(phases[i - 1], phases[static_cast<std::size_t>(random.next() % i)]);
+  return phases;
+}
+
 void check_emitter(const loam_emitter_def &def, double r) {
   check_choice("nozzle", def.nozzle, LOAM_NOZZLE_MESH);
   check_vector("position", def.position, 1e6 * r);
@@ -69,6 +78,7 @@ Emitter::Emitter(const loam_emitter_def &def, float kernel_radius, float density
                        static_cast<double>(by_mass ? def.mass_flow : def.flow), nozzle_.area,
                        by_mass ? most * static_cast<double>(density) : most, speed));
   per_layer_ = flow > 0 ? std::min(places, places * flow / most) : places;
+  phases_ = make_phases(nozzle_.places.size(), def.seed);
   choice_.resize(nozzle_.places.size());
   ids_.resize(nozzle_.places.size());
   positions_.resize(nozzle_.places.size());
@@ -105,14 +115,15 @@ void Emitter::enter(std::uint64_t layer, std::uint64_t &next_id, ParticleSink &s
   for (std::size_t i = 0; i < choice_.size(); ++i) choice_[i] = static_cast<std::uint32_t>(i);
   const float v = def_.speed;
   const double gone = (state_.clock - entry(layer)) * static_cast<double>(v), jitter = static_cast<double>(def_.jitter);
-  const Vec3<double> front = state_.position + gone * nozzle_.along;
   const Vec3<float> n = {static_cast<float>(nozzle_.along.x), static_cast<float>(nozzle_.along.y),
                          static_cast<float>(nozzle_.along.z)};
   for (std::size_t i = 0; i < count; ++i) {
     if (due < choice_.size()) // the first `count` of a random order
       std::swap(choice_[i], choice_[i + static_cast<std::size_t>(random.next() % (choice_.size() - i))]);
     const double a = spacing_ * random.between(-jitter, jitter), b = spacing_ * random.between(-jitter, jitter);
-    const Vec3<double> x = front + nozzle_.places[choice_[i]] + a * nozzle_.across[0] + b * nozzle_.across[1];
+    const std::uint32_t place = choice_[i];
+    const Vec3<double> x = state_.position + nozzle_.places[place] + a * nozzle_.across[0] + b * nozzle_.across[1] +
+                           (gone + spacing_ * phases_[place]) * nozzle_.along;
     positions_[i] = {static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z), static_cast<float>(volume_)};
     velocities_[i] = {v * n.x, v * n.y, v * n.z, 0};
     ids_[i] = static_cast<std::uint32_t>(next_id + i);

@@ -1,7 +1,8 @@
 // Streaming emitters: what enters when. See include/loam/emitter.h for the contract.
 //
 // Layer k enters at start + (k + 1/2) d / speed, d the spacing, and stands where it got to since then at the end of the substep. It is pinned, so that it moves at
-// the stream's speed and nothing else, until the next one enters: the distance between layers is exact, whatever the stream runs into.
+// the stream's speed and nothing else, until the next one enters: the distance between layers is exact, whatever the stream runs into. Each place has
+// a phase of its own along the flow, the same in every layer, so that layers are not seen as such.
 #pragma once
 
 #include <vector>
@@ -64,6 +65,7 @@ private:
   Nozzle nozzle_;
   double spacing_ = 0, per_layer_ = 0, volume_ = 0; // m; particles; m^3 of one
   float inverse_mass_ = 0;
+  std::vector<double> phases_; // of the places, in spacings along the flow
   std::vector<std::uint32_t> choice_, ids_;
   std::vector<Row> positions_, velocities_;
 };

@@ -54,6 +54,34 @@ TEST(Emitter, NoTwoParticlesEnterCloserThanTheSpacingLessItsJitter) {
   }
 }
 
+/* Where the particles are along the flow, as angles of a turn a spacing: layers would have one angle each. Full, and with a third of the flow. */
+TEST(Emitter, AStreamShowsNoLayers) {
+  for (const float share : {1.0f, 0.33f}) {
+    EmptyWorld empty(4000);
+    const float gravity[3] = {};
+    ASSERT_EQ(loam_world_set_gravity(empty.world.get(), gravity), LOAM_OK);
+    loam_emitter_def def = disc(empty.material, 0.03f);
+    def.flow = 0.999f * share * 3.14159265f * def.radius * def.radius * def.speed;
+    (void)empty.add(def);
+    for (int frame = 0; frame < 12; ++frame) empty.world.step(1.0f / 60);
+    double cosines = 0, sines = 0, count = 0, first = 0, last = 0;
+    empty.look([&](const loam_particle_view &view) {
+      count = double(view.count);
+      for (std::uint64_t i = 0; i < view.count; ++i) {
+        const double along = 1 - double(view.positions[4 * i + 1]), angle = 2 * 3.141592653589793 * along / 0.01;
+        cosines += std::cos(angle);
+        sines += std::sin(angle);
+        first = std::max(first, along);
+        last = std::min(last, along);
+      }
+    });
+    EXPECT_GT(count, share * 500);
+    EXPECT_LT(std::hypot(cosines, sines), 0.15 * count);
+    EXPECT_NEAR(first, 0.2, 0.0051); // the first layer's middle entered after 5 mm
+    EXPECT_GT(last, -0.0051);
+  }
+}
+
 /* Pressed against a floor 3 cm below, the stream keeps its flow, and what enters keeps its distance to what is there by position correction alone. */
 TEST(Emitter, ABlockedNozzleKeepsItsFlowAndTheStepIsFinite) {
   EmptyWorld empty(4000);
