@@ -19,6 +19,7 @@ gallery=(
   "water_wheel 100 600 0 0 .15 0"
   "poured_cup 200 640 .25 .1 .05 .1"
   "torn_hammock 120 600 .05 .12 .1 .2"
+  "paint_on_cloth 120 600 .1 0 .1 0"
 )
 
 threads=0

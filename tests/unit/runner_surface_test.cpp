@@ -49,6 +49,29 @@ TEST(RunnerSurface, PartsBodiesThatAreThreeSpacingsApart) {
   EXPECT_NEAR(volume(runner::make_surface(particles, spacing)), 2 * one, 0.01 * one) << "no bridge between them";
 }
 
+/* A film of particles half a spacing above a sheet: without the sheet its surface reaches through. */
+TEST(RunnerSurface, EndsAtASheet) {
+  const float spacing = 0.1f;
+  std::vector<runner::Vector3> particles;
+  for (int x = -5; x <= 5; ++x)
+    for (int z = -5; z <= 5; ++z)
+      particles.push_back({spacing * static_cast<float>(x), 0.53f * spacing, spacing * static_cast<float>(z)});
+  const runner::Barrier floor = [spacing](runner::Vector3 from, runner::Vector3 direction, float limit) {
+    const float distance = (0.03f * spacing - from.y) / direction.y;
+    return direction.y < 0 && distance < limit ? distance : limit;
+  };
+  const auto bottom = [&](const runner::Mesh &mesh) {
+    float lowest = 1;
+    for (const runner::Vector3 x : mesh.vertices) lowest = std::fmin(lowest, x.y);
+    return lowest;
+  };
+  const runner::Mesh whole = runner::make_surface(particles, spacing), cut = runner::make_surface(particles, spacing, floor);
+  EXPECT_LT(bottom(whole), -0.08f * spacing);
+  EXPECT_GT(bottom(cut), 0.1f * spacing);
+  EXPECT_LT(bottom(cut), 0.3f * spacing); // and there it lies
+  EXPECT_TRUE(runner::is_closed(cut));
+}
+
 TEST(RunnerSurface, LeavesOutWhatIsNotFinite) {
   const float lost = std::numeric_limits<float>::quiet_NaN(), far = std::numeric_limits<float>::infinity();
   EXPECT_EQ(runner::make_surface({{lost, 0, 0}, {0, far, 0}, {1e30f, 0, 0}}, 0.1f).triangle_count(), 0u);

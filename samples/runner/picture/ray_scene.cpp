@@ -88,6 +88,7 @@ RayScene::RayScene(const Scene &scene) {
     throw Error(fmt::format("Embree cannot be started (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));
   opaque_ = rtcNewScene(device_);
   glass_ = rtcNewScene(device_);
+  sheets_ = rtcNewScene(device_);
 
   for (const SceneDecoration &decoration : scene.decorations) {
     if (decoration.appearance == Appearance::hidden) continue;
@@ -123,6 +124,7 @@ RayScene::RayScene(const Scene &scene) {
 
 RayScene::~RayScene() {
   if (spheres_geometry_ != nullptr) rtcReleaseGeometry(spheres_geometry_);
+  if (sheets_ != nullptr) rtcReleaseScene(sheets_);
   if (glass_ != nullptr) rtcReleaseScene(glass_);
   if (opaque_ != nullptr) rtcReleaseScene(opaque_);
   if (device_ != nullptr) rtcReleaseDevice(device_);
@@ -167,6 +169,24 @@ std::uint32_t RayScene::add_surface(Appearance appearance, Vector3 colour, float
 }
 
 void RayScene::set_surface(std::uint32_t solid, const Mesh &mesh) { replace_mesh(solid, mesh, {}); }
+
+void RayScene::set_sheet(std::uint32_t solid, const Mesh &mesh) {
+  const auto is_there = [&] { return solid < replaced_.size() && replaced_[solid]; };
+  if (is_there()) rtcDetachGeometry(sheets_, solid);
+  set_surface(solid, mesh);
+  if (is_there()) rtcAttachGeometryByID(sheets_, rtcGetGeometry(opaque_, solid), solid);
+  rtcCommitScene(sheets_);
+}
+
+float RayScene::sheet_ahead(Vector3 from, Vector3 direction, float limit) const {
+  RTCRayHit found{};
+  found.ray = to_embree({from, direction}, 0, limit);
+  found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(sheets_, &context, &found);
+  return found.ray.tfar;
+}
 
 void RayScene::set_frame(std::vector<float> spheres, double time) {
   spheres_ = std::move(spheres);

@@ -54,6 +54,10 @@ public:
   // Adds a solid whose shape is given anew for each frame, before set_frame. Returns its index.
   std::uint32_t add_surface(Appearance appearance, Vector3 colour, float lift);
   void set_surface(std::uint32_t solid, const Mesh &mesh);
+  // The same of a sheet, which sheet_ahead() finds from then on.
+  void set_sheet(std::uint32_t solid, const Mesh &mesh);
+  // How far from a point the next sheet is along a direction of length 1, or `limit` if that is less.
+  float sheet_ahead(Vector3 from, Vector3 direction, float limit) const;
 
   Hit closest(const Ray &ray) const;
   bool occluded(const Ray &ray) const;
@@ -82,6 +86,7 @@ private:
   RTCDeviceTy *device_ = nullptr;
   RTCSceneTy *opaque_ = nullptr;
   RTCSceneTy *glass_ = nullptr;
+  RTCSceneTy *sheets_ = nullptr; // those of the opaque ones that are sheets
   RTCGeometryTy *spheres_geometry_ = nullptr;
   std::vector<float> spheres_;
   std::vector<Solid> solids_; // by Embree geometry id

@@ -95,7 +95,7 @@ Image Renderer::render(const Particles &particles, const std::vector<Mesh> &clot
 
 void Renderer::place_cloths(const std::vector<Mesh> &cloths) {
   for (std::size_t i = 0; i < cloths.size(); ++i)
-    if (sheets_[i] != none) rays_.set_surface(sheets_[i], cloths[i]);
+    if (sheets_[i] != none) rays_.set_sheet(sheets_[i], cloths[i]);
 }
 
 void Renderer::place_particles(const Particles &particles, double time) {
@@ -118,8 +118,12 @@ void Renderer::place_particles(const Particles &particles, double time) {
     const SceneEmitter &from = scene_->emitters[emitter];
     colours_.push_back(grain_colour(id < in_band_.size() && in_band_[id] ? from.band_colour : from.colour, variation, id));
   }
+  // Matter lies on a sheet by less than its surface is thick: what would reach through is cut off.
+  Barrier sheets;
+  if (!sheets_.empty())
+    sheets = [this](Vector3 from, Vector3 direction, float limit) { return rays_.sheet_ahead(from, direction, limit); };
   for (std::size_t i = 0; i < surfaces_.size(); ++i)
-    if (surfaces_[i] != none) rays_.set_surface(surfaces_[i], make_surface(bodies[i], scene_->world.kernel_radius));
+    if (surfaces_[i] != none) rays_.set_surface(surfaces_[i], make_surface(bodies[i], scene_->world.kernel_radius, sheets));
   rays_.set_frame(std::move(spheres), time);
   grain_lights_.resize(radii_.size());
   grain_light_states_ = std::vector<std::atomic<std::uint8_t>>(radii_.size());

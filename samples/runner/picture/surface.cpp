@@ -17,6 +17,7 @@ namespace {
 constexpr float reach = 2.4f;   // of a particle, in spacings
 constexpr float radius = 0.62f; // by which the surface lies outside the means, in spacings
 constexpr float cell = 0.4f;    // of the grid, in spacings
+constexpr float gap = 0.2f;     // between the surface and a barrier, in spacings: more than smoothing moves it
 constexpr int smoothing = 8;    // passes over the finished mesh
 
 constexpr int edge = 8;            // nodes of a block along each axis
@@ -62,10 +63,17 @@ public:
           block->mean[at] += weight * particle;
         }
   }
-  void finish(float surface_radius) {
+  void finish(float surface_radius, float barrier_gap, const Barrier &barrier) {
     each_node([&](Block &block, std::size_t at, Node node) {
       const float weight = block.weight[at];
-      block.weight[at] = weight > 1e-6f ? length(position(node) - (1 / weight) * block.mean[at]) - surface_radius : outside;
+      float &level = block.weight[at];
+      level = outside;
+      if (weight <= 1e-6f) return;
+      const Vector3 mean = (1 / weight) * block.mean[at], away = position(node) - mean;
+      const float distance = length(away);
+      level = distance - surface_radius;
+      if (barrier && level < 2 * size_ && distance > 0)
+        level = std::fmax(level, distance + barrier_gap - barrier(mean, (1 / distance) * away, distance + 2 * size_));
     });
   }
   float level(Node n) {
@@ -170,13 +178,13 @@ void smooth(Mesh &mesh) {
 
 } // namespace
 
-Mesh make_surface(const std::vector<Vector3> &particles, float spacing) {
+Mesh make_surface(const std::vector<Vector3> &particles, float spacing, const Barrier &barrier) {
   Grid grid(cell * spacing);
   const float limit = static_cast<float>(outermost) * cell * spacing; // of what the keys can tell apart
   for (const Vector3 particle : particles)
     if (std::fabs(particle.x) < limit && std::fabs(particle.y) < limit && std::fabs(particle.z) < limit)
       grid.add(particle, reach * spacing);
-  grid.finish(radius * spacing);
+  grid.finish(radius * spacing, gap * spacing, barrier);
 
   Mesh mesh;
   grid.each_node([&](Block &block, std::size_t at, Node node) {
