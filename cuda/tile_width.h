@@ -14,6 +14,7 @@ template <class Stage> struct SequentialOverNeighbours : std::is_base_of<Correct
 // A stage whose visits are ordered: blocks of one colour at once, the particles of a block in turn. All others visit every particle at once.
 template <class Stage> struct InTurn : std::is_same<Stage, CorrectPositionsInTurn> {};
 template <class Law, class Multiplier> struct InTurn<SolveInelastic<Law, Multiplier>> : std::true_type {};
+template <class Law, class Multiplier> struct InTurn<StartInelastic<Law, Multiplier>> : std::true_type {};
 template <FluidMotion Motion> struct InTurn<SolveFluid<Motion>> : std::true_type {};
 template <FluidMotion Motion> struct InTurn<StartFluid<Motion>> : std::true_type {};
 

@@ -6,7 +6,7 @@
  * can be found again: neighbours, contacts, distances to colliders, statistics. So it is restored into a world that was described alike, be it the one that was saved, or one made anew:
  *
  *   of loam_world_def     kernel_radius, solver, plasticity, velocity_smoothing, minimum_distance, gradient_cutoff, particle_capacity,
- *                         multiplier, zero_energy_stiffness, sleep_speed, sleep_delay
+ *                         multiplier, zero_energy_stiffness, warm_start, sleep_speed, sleep_delay
  *   materials             the same places in the order of creation (a place of a destroyed one is taken by the next), the same definitions but for
  *                         the name, and the same meetings
  *   colliders             the same places, kind, contacts, dimensions, meshes (as the collider was made) and grids
@@ -20,9 +20,9 @@
  * need more than the world ever had.
  *
  * The format is little-endian on every machine that the library runs on, begins with "LOAMSNAP" and the version of the format below, and has a
- * checksum over all of its bytes. The library reads its own version only. A particle takes 56 bytes; and 12 more where a material of the
- * world resists zero-energy modes (see loam_world_def.zero_energy_stiffness). Besides, a particle takes 1 byte each for its mass, its volume, its material and
- * what its law remembers of yielding where the world has 2 to 256 different values of it, and 4 where there are more: so sand that has flowed takes 60. A
+ * checksum over all of its bytes. The library reads its own version only. A particle takes 56 bytes, and 24 more with a warm start; and 12 more, 24 with a warm start, where a
+ * material of the world resists zero-energy modes (see loam_world_def.zero_energy_stiffness). Besides, a particle takes 1 byte each for its mass, its volume, its material and
+ * what its law remembers of yielding where the world has 2 to 256 different values of it, and 4 where there are more: so sand that has flowed takes 84. A
  * vertex of a cloth takes 24 bytes, as does one of a mesh that deforms.
  *
  * Thread contract: as for the world; during an asynchronous step every function here that takes a world answers LOAM_ERROR_BUSY.
@@ -37,7 +37,7 @@
 extern "C" {
 #endif
 
-#define LOAM_SNAPSHOT_VERSION 6
+#define LOAM_SNAPSHOT_VERSION 7
 
 /* The bytes that a snapshot of the world as it is now takes, exactly. Reads part of the particles, and so takes about a quarter of the time of saving.
  * Errors: INVALID_ARGUMENT for null. */

@@ -1,16 +1,24 @@
 #include "api/guard.h"
 
+#include <cstddef>
+
 using namespace loam;
 
+namespace {
+
+constexpr std::initializer_list<std::size_t> earlier_world_sizes = {offsetof(loam_world_def, warm_start)};
+
+} // namespace
+
 loam_status loam_world_def_default(loam_world_def *def, size_t size) {
-  return guarded(nullptr, [&] { write_definition(def, "def", size, default_world()); });
+  return guarded(nullptr, [&] { write_definition(def, "def", size, default_world(), earlier_world_sizes); });
 }
 
 loam_status loam_world_create(const loam_world_def *def, loam_world **world) {
   return guarded(nullptr, [&] {
     check_pointer(world, "world");
     *world = nullptr;
-    const loam_world_def copy = read_definition(def, "def", default_world());
+    const loam_world_def copy = read_definition(def, "def", default_world(), earlier_world_sizes);
     check_world_def(copy);
     *world = new loam_world(copy);
   });

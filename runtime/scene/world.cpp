@@ -77,6 +77,7 @@ void check_world_def(const loam_world_def &def) {
   check_range("zero_energy_stiffness", static_cast<double>(def.zero_energy_stiffness), 0, 100);
   check_range("sleep_speed", static_cast<double>(def.sleep_speed), 0, 1e3);
   check_range("sleep_delay", static_cast<double>(def.sleep_delay), static_cast<double>(0.01f), 1e3);
+  check_choice("warm_start", def.warm_start, 1);
 }
 
 } // namespace loam
@@ -105,6 +106,7 @@ loam_world::loam_world(const loam_world_def &def)
                              def.pair_capacity};
   settings.sleep_speed = def.sleep_speed;
   settings.sleep_delay = def.sleep_delay;
+  settings.warm_start = def.warm_start != 0;
   if (def.backend == LOAM_BACKEND_CUDA || (def.backend == LOAM_BACKEND_AUTO && cuda_available())) {
     backend_ = make_cuda_backend(settings, execution_);
     backend_kind_ = LOAM_BACKEND_CUDA;
@@ -159,8 +161,11 @@ void loam_world::send_materials() {
     if (m == nullptr) {
       list.push_back({Elastic{}, "", false});
     } else {
-      list.push_back(
-          {make_law(m->def, static_cast<double>(m->stiffness_share)), m->def.name, m->particles > 0 || m->emitters > 0});
+      list.push_back({make_law(m->def, static_cast<double>(m->stiffness_share)),
+                      m->def.name,
+                      m->particles > 0 || m->emitters > 0,
+                      {},
+                      m->def.density});
       needed = list.size();
     }
   }

@@ -182,6 +182,7 @@ template <class Fields> void loam_world::exchange(Fields &fields, Moving &moving
   fields.same("particle_capacity", def_.particle_capacity);
   fields.same("multiplier", def_.multiplier);
   fields.same("zero_energy_stiffness", def_.zero_energy_stiffness);
+  fields.same("warm_start", def_.warm_start);
   fields.same("sleep_speed", def_.sleep_speed);
   fields.same("sleep_delay", def_.sleep_delay);
 

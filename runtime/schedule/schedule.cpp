@@ -31,6 +31,7 @@ void Schedule::compile(const SceneContents &contents) {
   if (any_of_fluids(&SceneContents::Material::viscous)) viscosity = add("viscosity");
   if (fluids) prepare_fluids = add("prepare fluids");
   if (any_of_fluids(&SceneContents::Material::surface_tension)) surface_tension = add("surface tension");
+  if (contents.warm_start) warm_start = add("warm start");
   for (const SceneContents::Material &material : contents.materials)
     solve.push_back(material.in_use ? add("solve " + material.name) : -1);
   if (contents.position_correction) position_correction = add("position correction");

@@ -35,6 +35,7 @@ struct SolverMaterial {
   std::string name;
   bool in_use;                      // there are particles of it
   std::vector<float> meetings = {}; // by the other's index, see meetings.h; empty: it shares gradients with all
+  float density = 0;                // kg/m^3; of matter with a stiffness
 };
 
 // What stays for the life of a world.
@@ -50,9 +51,10 @@ struct SolverSettings {
   std::uint64_t particle_capacity;
   std::uint64_t pair_capacity; // 0: grows
   bool keep_free_distances =
-      true;              // false is for tests: every particle is asked for contacts in every substep, with the same result
-  float sleep_speed = 0; // m/s; 0: nothing sleeps
-  float sleep_delay = 0; // s
+      true;               // false is for tests: every particle is asked for contacts in every substep, with the same result
+  float sleep_speed = 0;  // m/s; 0: nothing sleeps
+  float sleep_delay = 0;  // s
+  bool warm_start = false; // see kernels/inelastic/warm_start.h; the tensor form only
 };
 
 // The law of contact with one material, by its number.

@@ -61,7 +61,7 @@ template <class Executor> void Solver<Executor>::fill_holes(std::vector<std::uin
   const int moved = static_cast<int>(fillers.size());
   executor_.upload(order_.data(), holes.data(), fillers.size());
   executor_.upload(keys_.data(), fillers.data(), fillers.size());
-  executor_.for_each(moved, FillHoles{now_.arrays(), order_.data(), keys_.data()});
+  executor_.for_each(moved, FillHoles{particle_arrays(), order_.data(), keys_.data()});
   count_ = static_cast<int>(left);
 }
 
@@ -81,7 +81,7 @@ template <class Executor> void Solver<Executor>::set_motion(const ParticleMotion
     executor_.upload(other_.positions.data(), positions.data(), positions.size());
     executor_.upload(other_.velocities.data(), velocities.data(), velocities.size());
     executor_.for_each(static_cast<int>(n),
-                       SetMotion{now_.arrays(), order_.data(), positions.empty() ? nullptr : other_.positions.data(),
+                       SetMotion{particle_arrays(), order_.data(), positions.empty() ? nullptr : other_.positions.data(),
                                  velocities.empty() ? nullptr : other_.velocities.data()});
   });
 }

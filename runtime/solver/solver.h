@@ -95,6 +95,16 @@ private:
              rests.bytes() + ages.bytes() + displacements.bytes();
     }
   };
+  // Of the particles as they are.
+  ParticleArrays particle_arrays() {
+    ParticleArrays arrays = now_.arrays();
+    arrays.stresses = stresses_.data();
+    arrays.answered_drifts = answered_drifts_.data();
+    return arrays;
+  }
+  bool warm_start() const {
+    return settings_.warm_start && settings_.projected_tensor && !settings_.semi_implicit && !settings_.jacobi;
+  }
   ParticleStorage make_storage() {
     return {executor_.template array<Row>(),           executor_.template array<Row>(),
             executor_.template array<float>(),         executor_.template array<float>(),
@@ -105,6 +115,7 @@ private:
             executor_.template array<float>()};
   }
   void reserve_storage(ParticleStorage &storage, std::size_t rows);
+  template <class T> void grow_array(Array<T> &array, std::size_t count);
   void reserve_histories();
   template <class T> void copy_in(Array<T> &array, const std::vector<T> &values) {
     array.reserve(std::max<std::size_t>(values.size(), 1));
@@ -143,6 +154,7 @@ private:
 #endif
   using ClothSubstep = typename Cloths::Substep;
   ClothSubstep cloth_substep(const StepInput &input);
+  void start_inelastic(std::uint32_t iterations);
   void iterate(const StepInput &input);
   void iterate_once(const StepInput &input);
   template <class F> void for_each_body(F &&f); // f(count, velocities): the particles, and each cloth
@@ -217,6 +229,8 @@ private:
   int record_size_ = 0;
 
   ParticleStorage now_, other_;
+  // For the next substep to start from. Each shares a spare array with its like among the particles, and changes places with it in the sort.
+  Array<float> stresses_, answered_drifts_;
   Array<std::uint32_t> keys_, order_;
   Array<float> x_, y_, z_;
   Array<int> cell_starts_, neighbour_counts_, close_counts_;
@@ -277,7 +291,8 @@ private:
 template <class Executor>
 Solver<Executor>::Solver(const SolverSettings &settings, const ExecutionSettings &execution)
     : settings_(settings), executor_(execution), kernel_(SmoothingKernel::make(static_cast<double>(settings.kernel_radius))),
-      now_(make_storage()), other_(make_storage()), keys_(executor_.template array<std::uint32_t>()),
+      now_(make_storage()), other_(make_storage()), stresses_(executor_.template array<float>()),
+      answered_drifts_(executor_.template array<float>()), keys_(executor_.template array<std::uint32_t>()),
       order_(executor_.template array<std::uint32_t>()), x_(executor_.template array<float>()),
       y_(executor_.template array<float>()), z_(executor_.template array<float>()),
       cell_starts_(executor_.template array<int>()), neighbour_counts_(executor_.template array<int>()),
@@ -305,16 +320,17 @@ Solver<Executor>::Solver(const SolverSettings &settings, const ExecutionSettings
   set_materials({});
 }
 
+// Growing keeps the particles: only the spare rows at the end become more.
+template <class Executor> template <class T> void Solver<Executor>::grow_array(Array<T> &array, std::size_t count) {
+  if (array.capacity() >= count) return;
+  Array<T> fresh = executor_.template array<T>();
+  fresh.reserve(count);
+  if (array.capacity() > 0) executor_.copy(fresh.data(), array.data(), array.capacity());
+  array.swap(fresh);
+}
+
 template <class Executor> void Solver<Executor>::reserve_storage(ParticleStorage &storage, std::size_t rows) {
-  // Growing keeps the particles: only the spare rows at the end become more.
-  const auto grow = [&](auto &array, std::size_t per_row) {
-    if (array.capacity() >= rows * per_row) return;
-    std::remove_reference_t<decltype(array)> fresh =
-        executor_.template array<std::remove_pointer_t<decltype(array.data())>>();
-    fresh.reserve(rows * per_row);
-    if (array.capacity() > 0) executor_.copy(fresh.data(), array.data(), array.capacity());
-    array.swap(fresh);
-  };
+  const auto grow = [&](auto &array, std::size_t per_row) { grow_array(array, rows * per_row); };
   grow(storage.positions, 1);
   grow(storage.velocities, 1);
   grow(storage.strains, 6);
@@ -353,6 +369,8 @@ template <class Executor> void Solver<Executor>::set_materials(const std::vector
   if (more) {
     reserve_storage(now_, rows);
     reserve_storage(other_, rows);
+    if (warm_start()) grow_array(stresses_, 6 * rows);
+    if (warm_start() && drifts_in_use_) grow_array(answered_drifts_, 3 * rows);
     neighbour_counts_.reserve(rows);
     close_counts_.reserve(rows);
     if (settings_.jacobi) {
@@ -387,6 +405,10 @@ template <class Executor> void Solver<Executor>::set_materials(const std::vector
       for (Array<Row> &column : jacobi_drift_rows_) column.reserve(rows);
     reserve_both(now_.drifts, other_.drifts, 3 * rows);
     executor_.set(now_.drifts.data(), 3 * count_, 0.0f);
+    if (warm_start()) {
+      answered_drifts_.reserve(3 * rows);
+      executor_.set(answered_drifts_.data(), 3 * count_, 0.0f);
+    }
     drifts_in_use_ = true;
   }
   if (displacement && !displacements_in_use_) {
@@ -525,7 +547,7 @@ template <class Executor> bool Solver<Executor>::drop() {
 template <class Executor> std::uint64_t Solver<Executor>::state_hash() {
   std::uint64_t hash = 0;
   executor_.session([&] {
-    hash = executor_.reduce(count_, StateHash{now_.arrays()});
+    hash = executor_.reduce(count_, StateHash{particle_arrays()});
     shapes_.for_each_deforming([&](DeformingMesh<Executor> &mesh) { hash = mesh.hash(hash); });
   });
   return cloth_.hash(StateHash::mix(hash, particles()));
@@ -534,6 +556,7 @@ template <class Executor> std::uint64_t Solver<Executor>::state_hash() {
 template <class Executor> std::vector<MemoryUse> Solver<Executor>::memory() const {
   std::vector<MemoryUse> uses;
   uses.push_back({"particles", now_.bytes() + other_.bytes()});
+  if (stresses_.bytes() > 0) uses.push_back({"warm start", stresses_.bytes() + answered_drifts_.bytes()});
   uses.push_back({"sorting and visit order", keys_.bytes() + order_.bytes() + x_.bytes() + y_.bytes() + z_.bytes() +
                                                  cell_starts_.bytes() + neighbour_counts_.bytes() + close_counts_.bytes() +
                                                  counters_.bytes() + executor_.order_bytes()});

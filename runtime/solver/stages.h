@@ -14,6 +14,7 @@
 #include "kernels/inelastic/solve_inelastic.h"
 #include "kernels/inelastic/solve_jacobi.h"
 #include "kernels/inelastic/update_strain.h"
+#include "kernels/inelastic/warm_start.h"
 #include "kernels/integration/position_correction.h"
 #include "kernels/integration/sleep.h"
 #include "kernels/integration/velocity_smoothing.h"
@@ -32,7 +33,7 @@ template <class Law> using TensorOf = ProjectedTensor<Law::resists_zero_energy_m
 
 template <class Law, bool Resists = Law::resists_zero_energy_modes> struct StagesOfLaw {
   using Type = typename Concatenate<StagesOfForm<Law, ScalarMultiplier>, StagesOfForm<Law, TensorOf<Law>>,
-                                    TypeList<UpdateStrain<Law, false>>>::Type;
+                                    TypeList<StartInelastic<Law, TensorOf<Law>>, UpdateStrain<Law, false>>>::Type;
 };
 template <class Law> struct StagesOfLaw<Law, true> {
   using Type = typename Concatenate<typename StagesOfLaw<Law, false>::Type, TypeList<UpdateStrain<Law, true>>>::Type;

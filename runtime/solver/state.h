@@ -16,6 +16,8 @@ template <class Executor> std::vector<StateSection> Solver<Executor>::state(std:
   add(StateKind::strains, now_.strains, 6, 6);
   if (histories_in_use_) add(StateKind::histories, now_.histories, 1, 1, 1);
   if (drifts_in_use_) add(StateKind::drifts, now_.drifts, 3, 3);
+  if (warm_start()) add(StateKind::stresses, stresses_, 6, 6);
+  if (warm_start() && drifts_in_use_) add(StateKind::answered_drifts, answered_drifts_, 3, 3);
   if (settings_.sleep_speed > 0) add(StateKind::rests, now_.rests, 1, 1, 1);
   if (now_.ages.capacity() > 0) add(StateKind::ages, now_.ages, 1, 1, 1);
   if (displacements_in_use_) add(StateKind::displacements, now_.displacements, 1, 1, 1);

@@ -21,6 +21,8 @@ enum class StateKind : std::uint32_t {
   materials = 9,
   rests = 10,
   displacements = 11,
+  stresses = 12,
+  answered_drifts = 13,
   ages = 20,
   cloth_positions = 32,
   cloth_velocities = 33,

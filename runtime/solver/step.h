@@ -87,6 +87,9 @@ template <class Executor> void Solver<Executor>::compile_schedule(const Surround
                           });
   contents.position_correction = (settings_.minimum_distance > 0.0f && !only_fluid) || distance_between_materials_;
   contents.velocity_smoothing = settings_.velocity_smoothing > 0.0f && !only_fluid;
+  contents.warm_start = warm_start() && std::any_of(materials_.begin(), materials_.end(), [](const SolverMaterial &m) {
+                          return m.in_use && !std::holds_alternative<Fluid>(m.law);
+                        });
   contents.cloth = cloth;
   contents.cloth_self_contact = self_contact;
   for (std::size_t m = 0; m < materials_.size(); ++m)
@@ -143,6 +146,14 @@ template <class Executor> void Solver<Executor>::search_neighbours() {
   ex.sort(keys_.data(), order_.data(), count_, key_bits);
   ex.for_each(count_, MoveParticles{now_.arrays(), other_.arrays(), order_.data(), x_.data(), y_.data(), z_.data()});
   std::swap(now_, other_);
+  if (warm_start()) {
+    ex.for_each(count_, MoveValues<6>{stresses_.data(), other_.strains.data(), order_.data()});
+    stresses_.swap(other_.strains);
+    if (drifts_in_use_) {
+      ex.for_each(count_, MoveValues<3>{answered_drifts_.data(), other_.drifts.data(), order_.data()});
+      answered_drifts_.swap(other_.drifts);
+    }
+  }
   ex.for_each(count_, MarkCells{keys_.data(), cell_starts_.data(), count_, cells});
   lap(schedule_.sort, particles());
   if (schedule_.sleep >= 0) find_active_cells();

@@ -41,6 +41,8 @@ void Solver<Executor>::set_unstrained(std::size_t at, int count, std::uint32_t m
     executor_.set(now_.histories.data() + at, count, history);
   }
   if (drifts_in_use_) executor_.set(now_.drifts.data() + 3 * at, 3 * count, 0.0f);
+  if (warm_start()) executor_.set(stresses_.data() + 6 * at, 6 * count, 0.0f);
+  if (warm_start() && drifts_in_use_) executor_.set(answered_drifts_.data() + 3 * at, 3 * count, 0.0f);
   if (displacements_in_use_) executor_.set(now_.displacements.data() + at, count, 0.0f);
   if (now_.free_distances.capacity() > 0) executor_.set(now_.free_distances.data() + at, count, 0.0f);
   if (now_.rests.capacity() > 0) executor_.set(now_.rests.data() + at, count, 0.0f);

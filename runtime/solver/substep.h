@@ -27,8 +27,9 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
       if (schedule_.find_cloth_contacts >= 0) lap(schedule_.find_cloth_contacts, cloth_.vertex_count());
     }
   } catch (...) {
-    // Memory for contacts was refused. Back to before the forces: the other copy still has the particles as they were before the sort.
-    ex.for_each(count_, MoveParticles{other_.arrays(), now_.arrays(), order_.data(), x_.data(), y_.data(), z_.data()});
+    // Memory for contacts was refused. Back to before the forces: the other copy still has the motion as it was before the sort.
+    ex.for_each(count_, RestoreMotion{other_.velocities.data(), other_.free_distances.data(), now_.velocities.data(),
+                                      now_.free_distances.data(), order_.data()});
     throw;
   }
 
@@ -58,6 +59,7 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
     if (fluids_.in_use && count_ > 0) start_fluids();
   }
 
+  if (schedule_.warm_start >= 0 && count_ > 0) start_inelastic(input.iterations);
   iterate(input);
   if (last && count_ > 0) measure(input.gravity);
 
@@ -106,11 +108,11 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
       using Law = std::remove_cvref_t<decltype(law)>;
       if constexpr (!is_fluid<Law>()) {
         const auto update = [&](auto non_affine) {
-          ex.for_each_particle_of(
-              m, now_.velocities.data(),
-              UpdateStrain<Law, non_affine.value>{law, limit, h_, now_.strains.data(), now_.histories.data(),
-                                                  now_.log_volumes.data(), now_.drifts.data(), drift_stiffness(),
-                                                  neighbour_counts_.data(), counters_.data() + 1, counters_.data() + 3});
+          ex.for_each_particle_of(m, now_.velocities.data(),
+                                  UpdateStrain<Law, non_affine.value>{
+                                      law, limit, h_, now_.strains.data(), now_.histories.data(), now_.log_volumes.data(),
+                                      now_.drifts.data(), drift_stiffness(), stresses_.data(), answered_drifts_.data(),
+                                      neighbour_counts_.data(), counters_.data() + 1, counters_.data() + 3});
         };
         if (settings_.projected_tensor)
           update(std::bool_constant<Law::resists_zero_energy_modes>());
@@ -160,6 +162,27 @@ template <class Executor> typename Solver<Executor>::ClothSubstep Solver<Executo
           deforms_,
           {now_.positions.data(), now_.velocities.data(), count_, static_cast<int>(settings_.particle_capacity),
            settings_.kernel_radius}};
+}
+
+// Iterations of matter start from the last substep's stress.
+template <class Executor> void Solver<Executor>::start_inelastic(std::uint32_t iterations) {
+  const float inverse_radius = 1 / settings_.kernel_radius, most = static_cast<float>(iterations);
+  const auto with_start = [&](int m, auto &&f) {
+    const float density = materials_[static_cast<std::size_t>(m)].density;
+    with_constraint(m, [&](const auto &law, StrainLimit, const auto &multiplier) {
+      using Law = std::remove_cvref_t<decltype(law)>;
+      using Form = std::remove_cvref_t<decltype(multiplier)>;
+      const float wave_speed = std::sqrt((law.bulk() + 2.0f / 3.0f * law.twice_mu()) / density);
+      if (wave_speed * h_ * inverse_radius > radii_per_iteration * most) return; // all of it starts from zero
+      if constexpr (std::is_same_v<Form, TensorOf<Law>>)
+        f(WarmStart<Law, Form>{law, h_, multiplier, stresses_.data(), answered_drifts_.data(), inverse_radius, most});
+    });
+  };
+  for (int pass = 0; pass < executor_.pass_count(); ++pass)
+    with_start(executor_.pass_material(pass), [&]<class Law, class Form>(const WarmStart<Law, Form> &start) {
+      executor_.for_each_block(pass, now_.velocities.data(), StartInelastic<Law, Form>{start});
+    });
+  lap(schedule_.warm_start, particles());
 }
 
 // The nonlinear iterations: as many as asked for, or until they have converged.

@@ -107,6 +107,7 @@ private:
     table->read("plasticity", def.plasticity, plasticities);
     table->read("multiplier", def.multiplier, multipliers);
     table->read("zero_energy_stiffness", def.zero_energy_stiffness);
+    table->read("warm_start", def.warm_start);
     table->read("sleep_speed", def.sleep_speed);
     table->read("sleep_delay", def.sleep_delay);
     table->read("velocity_smoothing", def.velocity_smoothing);

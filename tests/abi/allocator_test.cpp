@@ -16,6 +16,7 @@ public:
   Session(Allocator &allocator, std::uint32_t solver) : scene_(scenes::jittered_block(scenes::sand(), 120)) {
     def_ = scenes::world_def(scene_);
     def_.solver = solver;
+    def_.warm_start = 1;
     def_.substeps = 2;
     def_.iterations = 2;
     def_.particle_capacity = 600;

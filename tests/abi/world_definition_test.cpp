@@ -52,6 +52,14 @@ TEST(WorldDefinition, RefusesUnknownSizes) {
   }
 }
 
+/* What follows in the host's memory is not read. */
+TEST(WorldDefinition, TakesThatOfAnOlderHost) {
+  loam_world_def def = good();
+  def.struct_size = offsetof(loam_world_def, warm_start);
+  def.warm_start = ~0u;
+  EXPECT_EQ(created(def), "LOAM_OK");
+}
+
 TEST(WorldDefinition, RefusesEveryFloatOutOfItsRange) {
   struct Field {
     const char *name;
@@ -99,6 +107,7 @@ TEST(WorldDefinition, RefusesEveryIntegerOutOfItsRange) {
       {"solver", &loam_world_def::solver, {2, ~0u}, {0, 1}},
       {"plasticity", &loam_world_def::plasticity, {2, ~0u}, {0, 1}},
       {"multiplier", &loam_world_def::multiplier, {2, ~0u}, {0, 1}},
+      {"warm_start", &loam_world_def::warm_start, {2, ~0u}, {0, 1}},
       {"thread_count", &loam_world_def::thread_count, {257, ~0u}, {0, 256}},
       {"instruction_set", &loam_world_def::instruction_set, {5, ~0u}, {LOAM_INSTRUCTION_SET_PORTABLE}},
   };

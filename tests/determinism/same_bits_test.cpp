@@ -102,6 +102,7 @@ TEST(SameBitsOfEveryLaw, ForAnyNumberOfThreadsAndInstructionSet) {
     def.thread_count = threads;
     def.instruction_set = set;
     def.substeps = 4;
+    def.warm_start = 1;
     scenes::World world(def);
     for (std::size_t m = 0; m < materials.size(); ++m) {
       scenes::Scene share = block;

@@ -36,7 +36,7 @@ private:
 };
 
 struct Form {
-  std::uint32_t solver, multiplier;
+  std::uint32_t solver, multiplier, warm_start = 0;
 };
 
 class SnapshotOf : public testing::TestWithParam<Form> {};
@@ -48,6 +48,7 @@ TEST_P(SnapshotOf, EveryLawGoesOnWithTheSameBits) {
     loam_world_def def = scenes::world_def(scene);
     def.solver = GetParam().solver;
     def.multiplier = GetParam().multiplier;
+    def.warm_start = GetParam().warm_start;
     def.substeps = 4;
     Collapse straight(def, scene);
     for (int frame = 0; frame < 3; ++frame) straight.step(frame);
@@ -108,12 +109,14 @@ TEST_P(SnapshotOf, PositionsAndVelocitiesAloneAreNotEnough) {
 
 INSTANTIATE_TEST_SUITE_P(Forms, SnapshotOf,
                          testing::Values(Form{LOAM_SOLVER_GAUSS_SEIDEL, LOAM_MULTIPLIER_PROJECTED_TENSOR},
+                                         Form{LOAM_SOLVER_GAUSS_SEIDEL, LOAM_MULTIPLIER_PROJECTED_TENSOR, 1},
                                          Form{LOAM_SOLVER_GAUSS_SEIDEL, LOAM_MULTIPLIER_SCALAR},
                                          Form{LOAM_SOLVER_JACOBI, LOAM_MULTIPLIER_PROJECTED_TENSOR},
                                          Form{LOAM_SOLVER_JACOBI, LOAM_MULTIPLIER_SCALAR}),
                          [](const auto &tested) {
                            return std::string(tested.param.solver == LOAM_SOLVER_JACOBI ? "Jacobi" : "GaussSeidel") +
-                                  (tested.param.multiplier == LOAM_MULTIPLIER_SCALAR ? "Scalar" : "Tensor");
+                                  (tested.param.multiplier == LOAM_MULTIPLIER_SCALAR ? "Scalar" : "Tensor") +
+                                  (tested.param.warm_start != 0 ? "WarmStart" : "");
                          });
 
 /* All laws in one world, particles added after the snapshot, another gravity, a material that came with histories of its own. */

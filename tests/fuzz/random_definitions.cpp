@@ -81,6 +81,7 @@ loam_world_def random_world(Random &random) {
     def.sleep_delay = random.log_between(0.01, 0.1);
   }
   if (random.chance(0.3)) def.zero_energy_stiffness = random.chance(0.3) ? 0.0f : random.log_between(0.01, 100);
+  def.warm_start = random.chance(0.4) ? 1 : 0;
   def.particle_capacity = std::uint64_t(random.log_between(random.chance(0.2) ? 1 : 100, 2500));
   if (random.chance(0.1)) def.pair_capacity = std::uint64_t(random.log_between(1, 1e5));
   return def;

@@ -35,6 +35,7 @@ public:
                              1.0f,          count_, 0};
     solver.sleep_speed = settings.sleep_speed;
     solver.sleep_delay = 0.05f;
+    solver.warm_start = true;
     ExecutionSettings execution = {};
     execution.thread_count = runs == Runs::emulated_backwards ? 2 : 1;
     execution.instruction_set = best_instruction_set();
@@ -43,7 +44,7 @@ public:
                                     : std::make_unique<EmulatedSolver>(solver, execution);
 
     std::vector<SolverMaterial> list;
-    for (const loam_material_def &def : materials) list.push_back({make_law(def), def.name, true});
+    for (const loam_material_def &def : materials) list.push_back({make_law(def), def.name, true, {}, def.density});
     backend_->set_materials(list);
     for (std::size_t i = 0; i < count_; ++i) {
       const std::size_t material = i % materials.size();

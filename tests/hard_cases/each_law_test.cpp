@@ -11,7 +11,7 @@ using test::survive;
 using test::without_planes;
 
 class EachLaw : public test::OfASolver {};
-INSTANTIATE_TEST_SUITE_P(Solvers, EachLaw, test::both_solvers(), test::solver_name);
+INSTANTIATE_TEST_SUITE_P(Solvers, EachLaw, test::every_solver(), test::solver_name);
 
 /* With a Young's modulus for which elastic waves cross `particles` of them in a substep: c h / r, c^2 = (lambda + 2 mu) / density. */
 loam_material_def with_waves_of(loam_material_def material, float particles, float substep, float spacing) {
@@ -240,7 +240,7 @@ protected:
     return hard;
   }
 };
-INSTANTIATE_TEST_SUITE_P(Solvers, Mixture, test::both_solvers(), test::solver_name);
+INSTANTIATE_TEST_SUITE_P(Solvers, Mixture, test::every_solver(), test::solver_name);
 
 TEST_P(Mixture, EveryLawParticleByParticle) {
   test::shows("every law in one block, particle by particle, as one continuum");

@@ -14,6 +14,9 @@
 
 namespace loam::test {
 
+/* In the place of a solver: Gauss-Seidel with a warm start. */
+constexpr std::uint32_t warm_gauss_seidel = 100;
+
 /* A scene in several materials, and what is done to the world before each step. */
 struct HardCase {
   std::vector<scenes::Scene> parts;
@@ -30,7 +33,8 @@ struct HardCase {
     scenes::require(loam_world_def_default(&def, sizeof def), "default");
     def.backend = LOAM_BACKEND_CPU;
     def.thread_count = 1;
-    def.solver = solver;
+    def.solver = solver == warm_gauss_seidel ? std::uint32_t(LOAM_SOLVER_GAUSS_SEIDEL) : solver;
+    def.warm_start = solver == warm_gauss_seidel ? 1 : 0;
     def.substeps = 8;
     def.iterations = 4;
     def.particle_capacity = 20000;
@@ -219,10 +223,12 @@ inline std::size_t outside(const std::vector<float> &positions, const meshes::Me
   return count;
 }
 
-/* A test of each solver: derive the suite from it and instantiate it with both_solvers() and solver_name. */
+/* A test of each solver: derive the suite from it and instantiate it with both_solvers() or every_solver() and solver_name. */
 class OfASolver : public testing::TestWithParam<std::uint32_t> {};
 inline auto both_solvers() { return testing::Values(LOAM_SOLVER_GAUSS_SEIDEL, LOAM_SOLVER_JACOBI); }
+inline auto every_solver() { return testing::Values(LOAM_SOLVER_GAUSS_SEIDEL, LOAM_SOLVER_JACOBI, warm_gauss_seidel); }
 inline std::string solver_name(const testing::TestParamInfo<std::uint32_t> &tested) {
+  if (tested.param == warm_gauss_seidel) return "WarmStart";
   return tested.param == LOAM_SOLVER_JACOBI ? "Jacobi" : "GaussSeidel";
 }
 

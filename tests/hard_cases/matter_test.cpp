@@ -13,7 +13,7 @@ using test::survive;
 using test::without_planes;
 
 class Matter : public test::OfASolver {};
-INSTANTIATE_TEST_SUITE_P(Solvers, Matter, test::both_solvers(), test::solver_name);
+INSTANTIATE_TEST_SUITE_P(Solvers, Matter, test::every_solver(), test::solver_name);
 
 TEST_P(Matter, StiffnessFromAHundredPascalToAGigapascalInOneScene) {
   test::shows("1e2 to 1e9 Pa, stiff on soft on stiff");

@@ -42,6 +42,8 @@ public:
                                                cloud_.log_volumes.data(),
                                                nullptr,
                                                0.0f,
+                                               nullptr,
+                                               nullptr,
                                                cloud_.neighbour_counts.data(),
                                                &limited_,
                                                &decomposed_};

@@ -49,6 +49,14 @@ TEST(Schedule, EachEffectBringsItsStagesInTheOrderOfExecution) {
   EXPECT_EQ(list, expected);
 }
 
+TEST(Schedule, AWarmStartIsAStageBeforeTheSolve) {
+  SceneContents contents = {{{"rubber", true}}, false, false, {}};
+  EXPECT_FALSE(has(names(contents), "warm start"));
+  contents.warm_start = true;
+  const std::vector<std::string> list = names(contents);
+  EXPECT_LT(std::find(list.begin(), list.end(), "warm start"), std::find(list.begin(), list.end(), "solve rubber"));
+}
+
 TEST(Schedule, AMaterialWithoutParticlesHasNoStage) {
   Schedule schedule;
   schedule.compile({{{"sand", true}, {"clay", false}}, false, false, {}});

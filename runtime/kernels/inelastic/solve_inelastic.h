@@ -8,6 +8,32 @@
 
 namespace loam {
 
+// A visit's impulses on the velocities of the particle, `own` before it, and of its neighbours.
+template <bool NonAffine, class Team>
+LOAM_FN void push_neighbours(Team &team, typename Team::Item p, const Vec4<typename Team::Real> &own,
+                             const SpreadImpulse<typename Team::Real> &impulse) {
+  using Lane = typename Team::Lane;
+  using Real = typename Team::Real;
+  const Mat3<Lane> tensor = team.spread(impulse.tensor);
+  if constexpr (!NonAffine) {
+    for (auto k : team.neighbours(p)) {
+      const Vec4<Lane> v = team.neighbour_velocity(k);
+      const Vec3<Lane> u = v.xyz() + tensor * (v.w * team.gradient(k));
+      team.set_neighbour_velocity(k, {u.x, u.y, u.z, v.w});
+    }
+  } else {
+    const Vec3<Lane> along = team.spread(impulse.along);
+    for (auto k : team.neighbours(p)) {
+      const Vec4<Lane> v = team.neighbour_velocity(k);
+      const Vec3<Lane> g = team.gradient(k);
+      const Vec3<Lane> u = v.xyz() + v.w * (tensor * g - dot(g, g) * along);
+      team.set_neighbour_velocity(k, {u.x, u.y, u.z, v.w});
+    }
+  }
+  const Vec3<Real> u = own.xyz() + own.w * impulse.own;
+  team.set_velocity(p, {u.x, u.y, u.z, own.w});
+}
+
 template <class Law, class Multiplier> struct SolveInelastic {
   Law law;
   StrainLimit limit;
@@ -15,29 +41,11 @@ template <class Law, class Multiplier> struct SolveInelastic {
   Multiplier multiplier;
 
   template <class Team> LOAM_FN void operator()(Team &team, typename Team::Item p) const {
-    using Lane = typename Team::Lane;
     using Real = typename Team::Real;
     const Vec4<Real> own = team.velocity(p);
     const Constraint<Real> c = gather_constraint<Multiplier::non_affine>(team, p, substep, own.xyz());
     const auto impulse = spread_impulse<Multiplier::non_affine>(visit_constraint(multiplier, law, limit, team, p, c), c);
-    const Mat3<Lane> tensor = team.spread(impulse.tensor);
-    if constexpr (!Multiplier::non_affine) {
-      for (auto k : team.neighbours(p)) {
-        const Vec4<Lane> v = team.neighbour_velocity(k);
-        const Vec3<Lane> u = v.xyz() + tensor * (v.w * team.gradient(k));
-        team.set_neighbour_velocity(k, {u.x, u.y, u.z, v.w});
-      }
-    } else {
-      const Vec3<Lane> along = team.spread(impulse.along);
-      for (auto k : team.neighbours(p)) {
-        const Vec4<Lane> v = team.neighbour_velocity(k);
-        const Vec3<Lane> g = team.gradient(k);
-        const Vec3<Lane> u = v.xyz() + v.w * (tensor * g - dot(g, g) * along);
-        team.set_neighbour_velocity(k, {u.x, u.y, u.z, v.w});
-      }
-    }
-    const Vec3<Real> u = own.xyz() + own.w * impulse.own;
-    team.set_velocity(p, {u.x, u.y, u.z, own.w});
+    push_neighbours<Multiplier::non_affine>(team, p, own, impulse);
   }
 };
 

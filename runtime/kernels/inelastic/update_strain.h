@@ -16,12 +16,15 @@ template <class Law, bool NonAffine> struct UpdateStrain {
   float *strains;
   float *histories; // null if the law has none
   float *log_volumes;
-  float *drifts;         // 3 a particle; null without NonAffine
-  float drift_stiffness; // stiffness / r^2, see non_affine.h
+  float *drifts;          // 3 a particle; null without NonAffine
+  float drift_stiffness;  // stiffness / r^2, see non_affine.h
+  float *stresses;        // 6 a particle, see warm_start.h; null without a warm start
+  float *answered_drifts; // 3 a particle; null without either
   const int *neighbour_counts;
   int *strain_limited, *strain_decomposed; // counters
 
   static constexpr float greatest_drift = 0.5f; // as a strain
+  static constexpr float greatest_slow = 0.02f; // strain of a substep
 
   template <class Team> LOAM_FN void operator()(Team &team, typename Team::Item p) const {
     using Real = typename Team::Real;
@@ -64,6 +67,7 @@ template <class Law, bool NonAffine> struct UpdateStrain {
       S = select(alone, zero_symmetric<Real>(), S);
       if constexpr (Law::has_history) team.set_own_value(p, histories, 1, 0, mapped.history);
     }
+    if (stresses != nullptr) keep_stress(team, p, H);
     if constexpr (NonAffine) {
       // Within half a kernel radius, where the picture of a small displacement ends; and not NaN.
       const Real strain_squared = maximum(Real(drift_stiffness) * dot(motion.drift, motion.drift), Real(1e-30f));
@@ -79,6 +83,31 @@ template <class Law, bool NonAffine> struct UpdateStrain {
     S = select(frobenius_squared(S) < Real(1e12f), S, zero_symmetric<Real>());
     const Real values[6] = {S.xx, S.yy, S.zz, S.xy, S.xz, S.yz};
     for (int i = 0; i < 6; ++i) team.set_own_value(p, strains, 6, i, values[i]);
+  }
+
+private:
+  // tau = sigma D^T, with sigma = -T / (h V0) of the multiplier's state.
+  template <class Team>
+  LOAM_FN void keep_stress(Team &team, typename Team::Item p, const Mat3<typename Team::Real> &H) const {
+    using Real = typename Team::Real;
+    Mat3<Real> sigma, D = H;
+    for (int i = 0; i < 9; ++i) sigma.m[i / 3][i % 3] = team.field(p, Record::multiplier + i);
+    for (int i = 0; i < 3; ++i) D.m[i][i] = D.m[i][i] + Real(1.0f);
+    Sym3<Real> tau = symmetric_part(multiply_transposed(sigma, D));
+    // The faster matter deforms, the less its stress says of the next substep's: what hits hard starts from zero.
+    const Real deformed = frobenius_squared(symmetric_part(H));
+    const Real share = maximum(Real(1.0f) - deformed * Real(1.0f / (greatest_slow * greatest_slow)), Real(0.0f));
+    tau = share * tau;
+    tau = select(frobenius_squared(tau) < Real(1e36f), tau, zero_symmetric<Real>()); // not NaN
+    const Real values[6] = {tau.xx, tau.yy, tau.zz, tau.xy, tau.xz, tau.yz};
+    for (int i = 0; i < 6; ++i) team.set_own_value(p, stresses, 6, i, values[i]);
+    if constexpr (NonAffine) {
+      Vec3<Real> drift = share * team.vector(p, Record::drift_multiplier);
+      drift = select(dot(drift, drift) < Real(1e12f), drift, Vec3<Real>{Real(0.0f), Real(0.0f), Real(0.0f)});
+      team.set_own_value(p, answered_drifts, 3, 0, drift.x);
+      team.set_own_value(p, answered_drifts, 3, 1, drift.y);
+      team.set_own_value(p, answered_drifts, 3, 2, drift.z);
+    }
   }
 };
 

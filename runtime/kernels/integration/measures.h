@@ -170,6 +170,11 @@ struct StateHash {
     for (int k = 0; k < 3; ++k)
       h = mix(h, particles.drifts != nullptr ? bits(particles.drifts[3 * static_cast<long>(i) + k]) : 0);
     h = mix(h, particles.displacements != nullptr ? bits(particles.displacements[i]) : 0);
+    if (particles.stresses != nullptr) {
+      for (int k = 0; k < 6; ++k) h = mix(h, bits(particles.stresses[6 * static_cast<long>(i) + k]));
+      for (int k = 0; k < 3; ++k)
+        h = mix(h, particles.answered_drifts != nullptr ? bits(particles.answered_drifts[3 * static_cast<long>(i) + k]) : 0);
+    }
     h = mix(h, bits(particles.log_volumes[i]));
     h = mix(h, bits(particles.rest_volumes[i]));
     if (particles.rests != nullptr) h = mix(h, bits(particles.rests[i]));

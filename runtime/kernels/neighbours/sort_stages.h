@@ -23,6 +23,9 @@ struct ParticleArrays {
   float *rests;                   // see kernels/integration/sleep.h; null where nothing may sleep
   float *ages = nullptr;          // s; while something asks
   float *displacements = nullptr; // multipliers, see kernels/fluid/density_constraint.h; while there is fluid
+  // See kernels/inelastic/warm_start.h; null without one, and for the sort, which moves them by themselves.
+  float *stresses = nullptr;        // 6 a particle
+  float *answered_drifts = nullptr; // 3 a particle, where there are drifts
 };
 
 LOAM_FN void move_particle(const ParticleArrays &from, long j, const ParticleArrays &to, long i) {
@@ -40,6 +43,10 @@ LOAM_FN void move_particle(const ParticleArrays &from, long j, const ParticleArr
   if (to.rests != nullptr) to.rests[i] = from.rests[j];
   if (to.ages != nullptr) to.ages[i] = from.ages[j];
   if (to.displacements != nullptr) to.displacements[i] = from.displacements[j];
+  if (to.stresses != nullptr)
+    for (int k = 0; k < 6; ++k) to.stresses[6 * i + k] = from.stresses[6 * j + k];
+  if (to.answered_drifts != nullptr)
+    for (int k = 0; k < 3; ++k) to.answered_drifts[3 * i + k] = from.answered_drifts[3 * j + k];
 }
 
 struct AssignCells {
@@ -64,6 +71,29 @@ struct MoveParticles {
     y[i] = position.y;
     z[i] = position.z;
     move_particle(from, static_cast<long>(j), to, i);
+  }
+};
+
+// Of an array that has no second copy: it takes the place of another's.
+template <int Stride> struct MoveValues {
+  const float *from;
+  float *to;
+  const std::uint32_t *order;
+  LOAM_FN void operator()(int i) const {
+    for (int k = 0; k < Stride; ++k) to[Stride * static_cast<long>(i) + k] = from[Stride * static_cast<long>(order[i]) + k];
+  }
+};
+
+// What forces and the search for contacts have changed since the sort, back from the other copy.
+struct RestoreMotion {
+  const Row *velocities;
+  const float *free_distances; // null where there are none
+  Row *restored_velocities;
+  float *restored_distances;
+  const std::uint32_t *order;
+  LOAM_FN void operator()(int i) const {
+    restored_velocities[i] = velocities[order[i]];
+    if (free_distances != nullptr) restored_distances[i] = free_distances[order[i]];
   }
 };
 
