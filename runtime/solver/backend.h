@@ -51,9 +51,9 @@ struct SolverSettings {
   std::uint64_t particle_capacity;
   std::uint64_t pair_capacity; // 0: grows
   bool keep_free_distances =
-      true;               // false is for tests: every particle is asked for contacts in every substep, with the same result
-  float sleep_speed = 0;  // m/s; 0: nothing sleeps
-  float sleep_delay = 0;  // s
+      true;                // false is for tests: every particle is asked for contacts in every substep, with the same result
+  float sleep_speed = 0;   // m/s; 0: nothing sleeps
+  float sleep_delay = 0;   // s
   bool warm_start = false; // see kernels/inelastic/warm_start.h; the tensor form only
 };
 
