@@ -88,6 +88,9 @@ void viscous_water(Setup &setup) {
 void water_with_a_skin(Setup &setup) {
   upper_half_of<LOAM_LAW_FLUID>(setup, [](loam_material_def &def) { def.surface_tension = 0.072f; });
 }
+void water_with_eddies(Setup &setup) {
+  upper_half_of<LOAM_LAW_FLUID>(setup, [](loam_material_def &def) { def.vorticity_confinement = 0.5f; });
+}
 
 void two_sands(Setup &setup) { upper_half_of<LOAM_LAW_DRUCKER_PRAGER>(setup); }
 
@@ -261,6 +264,7 @@ std::vector<Effect> all() {
       {"materials", "fluid", "half the sand is water", two_sands, upper_half_of<LOAM_LAW_FLUID>},
       {"materials", "its viscosity", "1 Pa s, as of syrup", upper_half_of<LOAM_LAW_FLUID>, viscous_water},
       {"materials", "its surface tension", "that of water", upper_half_of<LOAM_LAW_FLUID>, water_with_a_skin},
+      {"materials", "its vorticity confinement", "half of what is lost", upper_half_of<LOAM_LAW_FLUID>, water_with_eddies},
       {"colliders", "a sphere", "touches the sand", nullptr, sphere<false>},
       {"colliders", "its reaction", "the sphere asks for it", sphere<false>, sphere<true>},
       {"colliders", "a mesh of 1 280 triangles", "the same sphere", nullptr, ball_of_triangles<3>},

@@ -113,6 +113,7 @@ void check_plasticity(const loam_material_def &def) {
     range("viscosity", def.viscosity, 0, 1e9);
     range("surface_tension", def.surface_tension, 0, 1e9);
     range("adhesion", def.adhesion, 0, 1e9);
+    range("vorticity_confinement", def.vorticity_confinement, 0, 1);
     break;
   default:
     break;
@@ -208,8 +209,12 @@ LawVariant make_law(const loam_material_def &given, double stiffness_share) {
   case LOAM_LAW_HERSCHEL_BULKLEY:
     return built(def.law, make_herschel_bulkley(def, m));
   case LOAM_LAW_FLUID:
-    return built(def.law,
-                 Fluid{{{0, 0}}, def.density, def.viscosity / def.density, def.surface_tension / def.density, def.adhesion});
+    return built(def.law, Fluid{{{0, 0}},
+                                def.density,
+                                def.viscosity / def.density,
+                                def.surface_tension / def.density,
+                                def.adhesion,
+                                def.vorticity_confinement});
   case LOAM_LAW_STOMAKHIN_SNOW:
     return built(def.law, make_stomakhin_snow(def, m));
   default:

@@ -12,10 +12,11 @@ namespace loam {
 
 loam_material_def default_material(std::uint32_t law);
 
-// What loam_material_def was before it had the fields from hardening_modulus on, and before it had those of fluids; they are 0 then, which the laws take for
-// none.
-inline constexpr std::initializer_list<std::size_t> earlier_material_sizes = {offsetof(loam_material_def, hardening_modulus),
-                                                                              offsetof(loam_material_def, viscosity)};
+// What loam_material_def was before it had the fields from hardening_modulus on, before it had those of fluids, and before vorticity confinement; they are 0
+// then, which the laws take for none.
+inline constexpr std::initializer_list<std::size_t> earlier_material_sizes = {
+    offsetof(loam_material_def, hardening_modulus), offsetof(loam_material_def, viscosity),
+    offsetof(loam_material_def, vorticity_confinement)};
 
 // Throws Error INVALID_ARGUMENT naming field, value and range.
 void check_material(const loam_material_def &def);

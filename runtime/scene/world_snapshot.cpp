@@ -109,7 +109,8 @@ constexpr MaterialField material_fields[] = {{"density", &loam_material_def::den
                                              {"critical_stretch", &loam_material_def::critical_stretch},
                                              {"viscosity", &loam_material_def::viscosity},
                                              {"surface_tension", &loam_material_def::surface_tension},
-                                             {"adhesion", &loam_material_def::adhesion}};
+                                             {"adhesion", &loam_material_def::adhesion},
+                                             {"vorticity_confinement", &loam_material_def::vorticity_confinement}};
 
 // Slots up to the last that is in use; `at(slot)` is null where there is nothing.
 template <class At> std::uint32_t used_slots(std::size_t count, At &&at) {

@@ -42,6 +42,7 @@ void Schedule::compile(const SceneContents &contents) {
   if (contents.cloth && contents.surroundings.colliders) cloth_contacts = add("cloth contacts");
   if (contents.surroundings.tolerance) convergence = add("convergence");
   if (contents.velocity_smoothing) velocity_smoothing = add("velocity smoothing");
+  if (any_of_fluids(&SceneContents::Material::vorticity_confinement)) vorticity_confinement = add("vorticity confinement");
   speed_limit = add("speed limit");
   if (contents.surroundings.colliders) final_contacts = add("final contacts");
   for (const SceneContents::Material &material : contents.materials)

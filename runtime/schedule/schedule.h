@@ -37,7 +37,7 @@ struct SceneContents {
     std::string name;
     bool in_use;
     bool fluid = false;
-    bool viscous = false, surface_tension = false;
+    bool viscous = false, surface_tension = false, vorticity_confinement = false;
   };
   std::vector<Material> materials;
   bool position_correction = false;
@@ -56,7 +56,8 @@ public:
       contacts = -1, velocity_smoothing = -1, speed_limit = -1, final_contacts = -1, advance = -1, sleep = -1,
       statistics = -1, find_cloth_contacts = -1, prepare_cloth = -1, solve_cloth = -1, cloth_contacts = -1,
       cloth_particles = -1, cloth_self_contact = -1, finish_cloth = -1, emitters = -1, fields = -1, killers = -1,
-      prepare_fluids = -1, viscosity = -1, surface_tension = -1, displace_fluids = -1, convergence = -1, warm_start = -1;
+      prepare_fluids = -1, viscosity = -1, surface_tension = -1, vorticity_confinement = -1, displace_fluids = -1,
+      convergence = -1, warm_start = -1;
   std::vector<int> solve, strain;
 
   void compile(const SceneContents &contents);

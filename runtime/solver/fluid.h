@@ -42,6 +42,10 @@ template <class Executor> void Solver<Executor>::reserve_fluids() {
     executor_.set(array.data(), static_cast<int>(rows), Row{0, 0, 0, 0});
   };
   if (schedule_.surface_tension >= 0) reserve(fluids_.surface);
+  if (schedule_.vorticity_confinement >= 0) {
+    reserve(fluids_.vortex_marks);
+    reserve(fluids_.vorticity);
+  }
   if (schedule_.viscosity >= 0)
     for (Array<Row> &marks : fluids_.marks) reserve(marks);
 }
@@ -118,6 +122,44 @@ template <class Executor> void Solver<Executor>::prepare_fluids() {
                      memory / (memory + h_), tolerance, 1.0f / fluids_.calibration.slope});
   });
   lap(schedule_.prepare_fluids, particles());
+}
+
+template <class Executor> template <class F> void Solver<Executor>::for_each_confined(F &&f) {
+  for_each_fluid([&](int m) {
+    const Fluid &fluid = std::get<Fluid>(materials_[static_cast<std::size_t>(m)].law);
+    if (fluid.vorticity_confinement > 0.0f)
+      f(m, fluid, VortexPair{now_.positions.data(), fluids_.vortex_marks.data(), kernel_, static_cast<float>(m)});
+  });
+}
+
+// After prepare_fluids().
+template <class Executor> void Solver<Executor>::mark_compression(const Vec3<float> &gravity) {
+  executor_.for_each(count_, ClearVorticity{now_.materials.data(), fluids_.vortex_marks.data(), fluids_.vorticity.data()});
+  for_each_confined([&](int m, const Fluid &, const VortexPair &) {
+    executor_.for_each_particle_of(m, now_.velocities.data(), MarkCompression{h_ * gravity, fluids_.vortex_marks.data()});
+  });
+  lap(schedule_.vorticity_confinement, 0);
+}
+
+// After the solve. The sources stand where the other copy of the velocities is.
+template <class Executor> void Solver<Executor>::confine_vorticity() {
+  constexpr float strength = 4; // more feeds what shakes
+  const float r = settings_.kernel_radius, curl = fluids_.calibration.curl;
+  Row *sources = other_.velocities.data();
+  executor_.set(sources, count_, Row{0, 0, 0, 0});
+  for_each_confined([&](int m, const Fluid &, const VortexPair &pair) {
+    executor_.for_each_particle_of(m, now_.velocities.data(), MeasureVorticity{pair, curl, fluids_.vorticity.data()});
+  });
+  for_each_confined([&](int m, const Fluid &fluid, const VortexPair &pair) {
+    executor_.for_each_particle_of(m, now_.velocities.data(),
+                                   WeighVorticity{pair, fluids_.vorticity.data(), strength * r * r,
+                                                  fluid.vorticity_confinement / (h_ * fluid.density), h_ / (r * r),
+                                                  sources});
+  });
+  for_each_confined([&](int m, const Fluid &fluid, const VortexPair &pair) {
+    executor_.for_each_particle_of(m, now_.velocities.data(), ConfineVorticity{pair, sources, curl * h_ * fluid.density});
+  });
+  lap(schedule_.vorticity_confinement, particles());
 }
 
 // One round over the fluids' constraints, of the velocities or what stands in their place.

@@ -171,6 +171,9 @@ private:
   void start_fluids();
   void diffuse_velocities();
   void pull_surfaces();
+  template <class F> void for_each_confined(F &&f);
+  void mark_compression(const Vec3<float> &gravity);
+  void confine_vorticity();
   template <FluidTurn Turn> void solve_fluids_at_once(const JacobiRows &rows);
   JacobiRows empty_jacobi_rows();
   template <class Stage> void solve_fluids_in_turn(const Stage &stage);
@@ -431,13 +434,18 @@ template <class Executor> void Solver<Executor>::set_materials(const std::vector
     fluids_.walls.free();
     fluids_.is_fluid.free();
   }
-  fluids_.viscosity = fluids_.surface_tension = 0;
+  fluids_.viscosity = fluids_.surface_tension = fluids_.vorticity_confinement = 0;
   for (const SolverMaterial &material : materials)
     if (const Fluid *law = std::get_if<Fluid>(&material.law); law != nullptr && material.in_use) {
       fluids_.viscosity = std::max(fluids_.viscosity, law->kinematic_viscosity);
       fluids_.surface_tension = std::max(fluids_.surface_tension, law->kinematic_surface_tension);
+      fluids_.vorticity_confinement = std::max(fluids_.vorticity_confinement, law->vorticity_confinement);
     }
   if (fluids_.surface_tension == 0.0f) fluids_.surface.free();
+  if (fluids_.vorticity_confinement == 0.0f) {
+    fluids_.vortex_marks.free();
+    fluids_.vorticity.free();
+  }
   if (fluids_.viscosity == 0.0f) {
     fluids_.viscosities.free();
     for (Array<Row> &marks : fluids_.marks) marks.free();

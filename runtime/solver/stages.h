@@ -8,6 +8,7 @@
 #include "kernels/fluid/solve_fluid_at_once.h"
 #include "kernels/fluid/surface_tension.h"
 #include "kernels/fluid/viscosity.h"
+#include "kernels/fluid/vorticity_confinement.h"
 #include "kernels/inelastic/measure_constraint.h"
 #include "kernels/inelastic/projected_tensor.h"
 #include "kernels/inelastic/scalar_multiplier.h"
@@ -47,11 +48,12 @@ template <class... L> struct StagesOfLaws<TypeList<L...>> {
 #ifdef LOAM_WITHOUT_FLUID
 using FluidStages = TypeList<>;
 #else
-using FluidStages = TypeList<PrepareFluid, StartFluid<FluidMotion::velocities>, SolveFluid<FluidMotion::velocities>,
-                             StartFluid<FluidMotion::displacements>, SolveFluid<FluidMotion::displacements>,
-                             FluidImpulse<FluidTurn::start>, FluidImpulse<FluidTurn::velocities>,
-                             FluidImpulse<FluidTurn::start_displacements>, FluidImpulse<FluidTurn::displacements>,
-                             KeepMultipliers, MeasureViscosity, DiffuseVelocities, FindSurface, PullSurface>;
+using FluidStages =
+    TypeList<PrepareFluid, StartFluid<FluidMotion::velocities>, SolveFluid<FluidMotion::velocities>,
+             StartFluid<FluidMotion::displacements>, SolveFluid<FluidMotion::displacements>, FluidImpulse<FluidTurn::start>,
+             FluidImpulse<FluidTurn::velocities>, FluidImpulse<FluidTurn::start_displacements>,
+             FluidImpulse<FluidTurn::displacements>, KeepMultipliers, MeasureViscosity, DiffuseVelocities, FindSurface,
+             PullSurface, MarkCompression, MeasureVorticity, WeighVorticity, ConfineVorticity>;
 #endif
 
 using TeamStages = Concatenate<

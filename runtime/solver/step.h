@@ -97,6 +97,7 @@ template <class Executor> void Solver<Executor>::compile_schedule(const Surround
       contents.materials[m].fluid = true;
       contents.materials[m].viscous = fluid->kinematic_viscosity > 0.0f;
       contents.materials[m].surface_tension = fluid->kinematic_surface_tension > 0.0f;
+      contents.materials[m].vorticity_confinement = fluid->vorticity_confinement > 0.0f;
     }
   contents.sleep = settings_.sleep_speed > 0.0f;
   contents.particles =

@@ -50,6 +50,7 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
     if (fluids_.in_use && count_ > 0) {
       if (schedule_.viscosity >= 0) diffuse_velocities();
       prepare_fluids();
+      if (schedule_.vorticity_confinement >= 0) mark_compression(input.gravity);
       if (schedule_.surface_tension >= 0) pull_surfaces();
     }
   }
@@ -72,6 +73,9 @@ template <class Executor> void Solver<Executor>::substep(const StepInput &input,
     });
     now_.velocities.swap(other_.velocities);
     lap(schedule_.velocity_smoothing, particles());
+  }
+  if constexpr (fluid_is_built) {
+    if (schedule_.vorticity_confinement >= 0 && count_ > 0) confine_vorticity();
   }
   ex.for_each(count_, LimitSpeed{now_.velocities.data(), settings_.kernel_radius / h_, counters_.data()});
   lap(schedule_.speed_limit, particles());

@@ -54,6 +54,7 @@ public:
       table_.read("viscosity", def_.viscosity);
       table_.read("surface_tension", def_.surface_tension);
       table_.read("adhesion", def_.adhesion);
+      table_.read("vorticity_confinement", def_.vorticity_confinement);
       break;
     default:
       break;

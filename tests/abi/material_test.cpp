@@ -82,6 +82,7 @@ TEST_F(Materials, EveryNumberHasItsRange) {
       {"viscosity", LOAM_LAW_FLUID, &loam_material_def::viscosity, {-1e-6f, 1.1e9f}, {0, 1e-6f, 1e9f}},
       {"surface_tension", LOAM_LAW_FLUID, &loam_material_def::surface_tension, {-1e-6f, 1.1e9f}, {0, 0.07f, 1e9f}},
       {"adhesion", LOAM_LAW_FLUID, &loam_material_def::adhesion, {-1e-6f, 1.1e9f}, {0, 20, 1e9f}},
+      {"vorticity_confinement", LOAM_LAW_FLUID, &loam_material_def::vorticity_confinement, {-1e-6f, 1.01f}, {0, 0.5f, 1}},
   };
   for (const Field &field : fields) {
     std::vector<float> bad = field.bad;
@@ -118,7 +119,7 @@ TEST_F(Materials, FieldsOfOtherLawsAreIgnored) {
   def.yield_stress = def.friction_angle = def.cohesion = nan;
   EXPECT_EQ(accepts(def), "LOAM_OK");
   def.hardening_modulus = def.consolidation = def.consistency = def.critical_stretch = nan;
-  def.viscosity = def.surface_tension = def.adhesion = nan;
+  def.viscosity = def.surface_tension = def.adhesion = def.vorticity_confinement = nan;
   EXPECT_EQ(accepts(def), "LOAM_OK");
   def = of_law(LOAM_LAW_DRUCKER_PRAGER);
   def.yield_stress = -1;
@@ -160,6 +161,15 @@ TEST_F(Materials, TheFirstVersionsStructStillWorks) {
   whole.struct_size = sizeof whole;
   ASSERT_EQ(loam_material_get(world(), water, &whole), LOAM_OK);
   EXPECT_EQ(whole.viscosity, 0);
+  // And one before vorticity confinement.
+  constexpr std::uint32_t third_size = 120;
+  EXPECT_EQ(offsetof(loam_material_def, vorticity_confinement), third_size);
+  ASSERT_EQ(loam_material_def_default(LOAM_LAW_FLUID, def, third_size), LOAM_OK);
+  def->adhesion = 7;
+  ASSERT_EQ(scenes::outcome(loam_material_create(world(), def, &water)), "LOAM_OK");
+  ASSERT_EQ(loam_material_get(world(), water, &whole), LOAM_OK);
+  EXPECT_EQ(whole.adhesion, 7);
+  EXPECT_EQ(whole.vorticity_confinement, 0);
   // It cannot know of a newer law's fields: they are 0, and the text says which is not enough.
   ASSERT_EQ(loam_material_def_default(LOAM_LAW_HERSCHEL_BULKLEY, def, first_size), LOAM_OK);
   refuses(*def, {"consistency", "0"});

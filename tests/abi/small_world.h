@@ -81,7 +81,7 @@ protected:
 
   /* struct_size as no version ever had it: nothing, too little, too much, garbage. */
   static std::vector<std::uint32_t> wrong_sizes(std::size_t size) {
-    return {0, 1, std::uint32_t(size) - 4, std::uint32_t(size) + 4, 0xffffffffu};
+    return {0, 1, std::uint32_t(size) - 2, std::uint32_t(size) + 4, 0xffffffffu};
   }
 
   scenes::Scene scene_;

@@ -111,6 +111,7 @@ loam_material_def random_material(Random &random) {
   if (random.chance(0.1)) def.constant_hardness = 1;
   if (random.chance(0.3)) def.viscosity = random.log_between(1e-4, 1e6);
   if (random.chance(0.3)) def.surface_tension = random.log_between(1e-3, 1e4);
+  if (random.chance(0.3)) def.vorticity_confinement = random.between(0, 1);
   if (random.chance(0.3)) def.adhesion = random.log_between(1, 1e6);
   if (random.chance(0.7)) scale_numbers(def, random);
   return def;

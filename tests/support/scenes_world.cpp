@@ -55,6 +55,7 @@ std::vector<loam_material_def> each_law() {
   syrup.viscosity = 3;
   syrup.surface_tension = 0.05f;
   syrup.adhesion = 20;
+  syrup.vorticity_confinement = 0.5f;
   return {sand(), rubber(), plasticine(500), metal, clay, mud, foam, starch, snow, of_law(LOAM_LAW_FLUID, "water"), syrup};
 }
 

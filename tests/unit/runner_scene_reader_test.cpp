@@ -265,6 +265,7 @@ TEST(RunnerSceneReader, RefusesUnknownPresetsAndNumbersOfOtherLaws) {
   EXPECT_EQ(material_of("law = \"fluid\"\ndensity = 900\n").density, 900.0f);
   EXPECT_EQ(material_of("preset = \"water\"\nviscosity = 3\n").viscosity, 3.0f);
   EXPECT_EQ(material_of("preset = \"water\"\nsurface_tension = 0.07\n").surface_tension, 0.07f);
+  EXPECT_EQ(material_of("preset = \"water\"\nvorticity_confinement = 0.5\n").vorticity_confinement, 0.5f);
   EXPECT_EQ(material_of("preset = \"water\"\nadhesion = 20\n").adhesion, 20.0f);
   expect_mentions(scene_error(of_material("preset = \"candy\"\nviscosity = 3\n")),
                   {"scene.toml:7:", "viscosity", "unknown key"});

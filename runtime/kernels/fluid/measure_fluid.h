@@ -24,6 +24,7 @@ struct FluidCalibration {
   float full_response;          // r^6 / k^2 times the sum of |grad W|^2
   float slope;                  // what the sum makes of a gradient of 1
   float wall_value, wall_slope; // a half space of the lattice r/2 away, over the kernel's integrals there
+  float curl;                   // 1 / what the sum makes of a gradient of 1, with true volumes
   float viscous_scale;          // 10, calibrated, see viscosity.h
   float viscous_rate;           // of one component of D, at a kinematic viscosity and substep of 1 and r = 1
 
@@ -58,6 +59,7 @@ struct FluidCalibration {
             scale * slopes,
             scale * half / value,
             scale * half_slopes / plane,
+            1 / (volume * slopes),
             viscous_scale,
             viscous_scale * volume * along * r * r};
   }
